@@ -1,8 +1,9 @@
-"""Find the preset to which "there" refers after a turn that compared presets."""
+"""Counts that earlier turns made at presets, and the preset to which "there" refers after a turn that compared presets."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from scope_ptz.planner.grammar import instruction_tree as ast
@@ -13,25 +14,86 @@ from scope_ptz.planner.grammar.parsing.instruction_parser import parse
 if TYPE_CHECKING:
     from scope_ptz.planner.base import PastTurn
 
+_LEAVE_PRESET = frozenset({"adjust_ptz", "go_home", "zoom_to_object", "track_object"})
+
+
+@dataclass(frozen=True, slots=True)
+class EarlierCount:
+    """A count of an earlier turn.
+
+    Attributes:
+        preset: The preset at which the camera was.
+        description: The objects that were counted.
+        number: How many there were.
+        turn: The index of the turn in the conversation.
+    """
+
+    preset: str
+    description: str
+    number: int
+    turn: int
+
+
+def last_preset(conversation: Sequence[PastTurn]) -> str:
+    """Return the preset that was visited last; empty if none was."""
+    outcomes = [o for turn in conversation for exchange in turn.exchanges for o in exchange.outcomes]
+    visited = (
+        str(o.call.arguments.get("name", "")) for o in reversed(outcomes) if o.call.name == "go_to_preset" and o.error is None
+    )
+    return next(visited, "")
+
+
+def counts_at_presets(conversation: Sequence[PastTurn]) -> list[EarlierCount]:
+    """Return the counts that were made at presets, oldest first."""
+    counts: list[EarlierCount] = []
+    at = ""  # the preset at which the camera was; empty elsewhere
+    for index, turn in enumerate(conversation):
+        for outcome in (outcome for exchange in turn.exchanges for outcome in exchange.outcomes):
+            arguments = outcome.call.arguments
+            if outcome.call.name == "go_to_preset" and outcome.error is None:
+                at = str(arguments.get("name", ""))
+            elif outcome.call.name in _LEAVE_PRESET:
+                at = ""
+            elif outcome.call.name == "count_objects" and at and outcome.result is not None:
+                counts.append(EarlierCount(at, str(arguments.get("description", "")), int(outcome.result["count"]), index))
+    return counts
+
+
+def counts_of_tour(counts: Sequence[EarlierCount]) -> list[EarlierCount]:
+    """Return the counts of the last turn that counted, if it counted the same objects at several presets; otherwise none."""
+    tour = [count for count in counts if count.turn == counts[-1].turn and count.description == counts[-1].description]
+    return tour if len({count.preset for count in tour}) > 1 else []
+
+
+def last_two_presets(counts: Sequence[EarlierCount]) -> tuple[str, str] | None:
+    """Return the two presets at which the same objects were counted last, the earlier one first; None if there are no two."""
+    for earlier in reversed(counts[:-1]):
+        if earlier.preset != counts[-1].preset and earlier.description == counts[-1].description:
+            return earlier.preset, counts[-1].preset
+    return None
+
 
 def earlier_winners(conversation: Sequence[PastTurn], presets: tuple[str, ...]) -> tuple[str, ...] | None:
-    """Return the preset that won the comparison of the last turn with tool calls, or several presets in a tie.
+    """Return the preset that won the comparison of an earlier turn, or several presets in a tie.
 
-    None if that turn did not compare presets.
+    The comparison is that of the last turn with tool calls, or of a later turn that compared the counts of earlier ones. None if
+    these turns did not compare presets.
     """
-    last = next((turn for turn in reversed(conversation) if turn.exchanges), None)
-    steps = parse(last.instruction, presets).steps if last is not None else None
-    compared = next((found for step in reversed(steps or ()) if (found := _comparison_of(step)) is not None), None)
-    if last is None or compared is None or compared.any_of:
+    last = next((i for i in reversed(range(len(conversation))) if conversation[i].exchanges), None)
+    if last is None:
         return None
-    counts: dict[str, int] = {}
-    at = ""
-    for outcome in (outcome for exchange in last.exchanges for outcome in exchange.outcomes):
-        if outcome.call.name == "go_to_preset":
-            at = str(outcome.call.arguments.get("name", ""))
-        elif outcome.call.name == "count_objects" and at and outcome.result is not None:
-            counts[at] = int(outcome.result["count"])
-    return tuple(presets_of_rank(counts, compared.comparison, compared.rank)) or None
+    for index in range(len(conversation) - 1, last - 1, -1):
+        steps = parse(conversation[index].instruction, presets).steps
+        compared = next((found for step in reversed(steps or ()) if (found := _comparison_of(step)) is not None), None)
+        if compared is not None and not compared.any_of:
+            counts = counts_at_presets(conversation[: index + 1])
+            if index > last:
+                counts = counts_of_tour(counts) if counts else []
+            else:
+                counts = [count for count in counts if count.turn == index]
+            ranked = presets_of_rank({c.preset: c.number for c in counts}, compared.comparison, compared.rank)
+            return tuple(ranked) or None
+    return None
 
 
 def _comparison_of(step: ast.Step) -> ast.WhichPreset | None:

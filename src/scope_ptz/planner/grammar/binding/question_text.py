@@ -6,7 +6,6 @@ import re
 from collections.abc import Sequence
 from typing import Literal
 
-from scope_ptz.english import is_plural
 from scope_ptz.planner.grammar.binding.embedded_questions import direct_question
 from scope_ptz.planner.grammar.binding.preset_matching import match_exactly
 from scope_ptz.planner.grammar.lexing.lexer import lexemes_of
@@ -15,14 +14,6 @@ from scope_ptz.planner.grammar.parsing.parts.patterns import full_match
 _BARE_WHO_OR_WHAT = re.compile(r"(?:who|what)(?:['’]s| is| are)\?*", re.IGNORECASE)
 _WAITING = re.compile(r"(when(?!(?:['’]s| (?:do|does|did|is|are|will|was|were))\b)|once|as soon as|whenever)\b", re.IGNORECASE)
 _FUTURE = re.compile(r"Is it true that (?:an?|any\w*|some\w*) ", re.IGNORECASE)  # "let me know if anything moves"
-_EXISTENCE = re.compile(
-    r"(?:(?:(?:is|are) there|(?:can|do) you see|do (?:we|you) have|have (?:we|you) got|"
-    r"(?:is|are)(?= (?:an?|any|some) .* (?:in view|visible|around|"
-    r"here|there|present|in (?:the )?(?:picture|frame|shot|image|sight)|on screen)\b)) |(?=any ))(?:an? |any |the |some )?(.+?)"
-    r"(?: anywhere| in view| visible| right now| here| there| present|"
-    r" in (?:the )?(?:picture|frame|shot|image|sight)| on screen)?\s*\?*$",
-    re.IGNORECASE,
-)
 _TWO_QUESTIONS = re.compile(
     r"(?P<seen>(?:can you see|do you see|is there|are there|do we have|have we got) (?:an?|any|some) [^,?]+?)"
     r",? and (?:if so,? )?(?P<more>(?:what|which|where|how)\b.+)",
@@ -36,7 +27,11 @@ _WINNER = re.compile(
     rf"|{_HAS_MORE}",
     re.IGNORECASE,
 )
-_PREDICATE = re.compile(r"how many (?:of them )?(?:are|were) (\w+ing\b[^?]*)\?*", re.IGNORECASE)
+_PREDICATE = re.compile(
+    r"how many (?:of (?:them|those|these) )?(?P<predicate>(?:(?:are|were|have|wear|carry|hold) |do(?: not|n['’]t) (?:have|wear) )"
+    r"(?!there\b|you\b|we\b|visible\b|in (?:view|sight|total|all)\b)[^?]+)\?*",
+    re.IGNORECASE,
+)
 _WHICH_HAS = re.compile(_HAS_MORE, re.IGNORECASE)
 _ANY_THERE = re.compile(
     r"(?:is there|are there|(?:can|do) you see|do we have|have we got|is|are) "
@@ -45,15 +40,12 @@ _ANY_THERE = re.compile(
 )
 _DESCRIBE = re.compile(r"describe(?: each(?: one| view| of them)?)?\W*", re.IGNORECASE)
 _BEFORE_CAMERA = "(FILLER)* what BE (in_front_of_you|in_front_of_us|in_front_of_the_camera) (FILLER|NOW|QUESTION|STOP)*"
-_POSSESSIVE = re.compile(r"\b(its|their)\b", re.IGNORECASE)
-_PRONOUN = re.compile(r"\b(it|they|them|that one|this one)\b", re.IGNORECASE)
-_IMPERSONAL = re.compile(
-    r"\bit\s+(raining|dark|light|day|night|sunny|foggy|cloudy|snowing|busy|daytime|wet|bright|safe|windy|snowy|like|\w+ing)\b"
-    r"|\bwhat('s| is) it\b|\bit is\b",
-    re.IGNORECASE,
-)
-_THE_THING_AND_IT = re.compile(r"\bthe \w+.*\b(it|they|them)\b")
 _AT_PRESET = re.compile(r"(.+?) (at|from|in) (the )?([\w -]+?)( preset| view| position)?\?*", re.IGNORECASE)
+
+
+def with_subject(question: str) -> str:
+    """Return "who's there?" for a bare "who's?"."""
+    return f"{question.strip(' ?')} there?" if _BARE_WHO_OR_WHAT.fullmatch(question.strip()) else question
 
 
 def is_answered_by_counts(question: str) -> bool:
@@ -68,9 +60,9 @@ def bare_comparison(question: str) -> Literal["more", "fewer"] | None:
 
 
 def how_many_predicate(question: str) -> str:
-    """Return "sitting down" for "how many are sitting down?", which asks about the objects counted last; empty for others."""
+    """Return "are sitting down" for "how many are sitting down?", which asks about the objects counted last; empty for others."""
     match = _PREDICATE.fullmatch(question.strip())
-    return match[1] if match else ""
+    return match["predicate"] if match else ""
 
 
 def is_request_to_describe(question: str) -> bool:
@@ -88,37 +80,10 @@ def is_about_the_future(question: str, *, embedded: bool) -> bool:
     return bool(_WAITING.match(question) or (embedded and _FUTURE.match(direct_question(question))))
 
 
-def is_impersonal(text: str) -> bool:
-    """Return whether "it" in the text refers to no object, as in "is it raining?"."""
-    return bool(_IMPERSONAL.search(text))
-
-
 def two_questions(question: str) -> tuple[str, str] | None:
     """Split "is there a van, and if so, what colour is it?" into its two questions; None for a single question."""
     match = _TWO_QUESTIONS.fullmatch(question.strip())
     return (f"{match['seen']}?", match["more"]) if match else None
-
-
-def with_antecedent(question: str, antecedent: str) -> str:
-    """Replace the first pronoun of a question with the antecedent, unless it refers to something in the question itself.
-
-    Args:
-        question: The question. A bare "who's?" becomes "who's there?".
-        antecedent: The description that a pronoun refers to; empty if there is none.
-    """
-    if _BARE_WHO_OR_WHAT.fullmatch(question.strip()):
-        question = f"{question.strip(' ?')} there?"
-    if not antecedent or is_impersonal(question) or _THE_THING_AND_IT.search(question):
-        return question
-    if not is_plural(antecedent.split(" ")[-1]):
-        question = re.sub(r"\bare they\b", "is it", question, flags=re.IGNORECASE)
-    return _POSSESSIVE.sub(f"the {antecedent}'s", _PRONOUN.sub(f"the {antecedent}", question, count=1), count=1)
-
-
-def sought_thing(question: str) -> str:
-    """Return the description in a question about existence ("is there a red van?"); empty for other questions."""
-    match = _EXISTENCE.match(question)
-    return match[1] if match else ""
 
 
 def split_at_preset(question: str, presets: Sequence[str]) -> tuple[str, str] | None:

@@ -3,45 +3,46 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
-from scope_ptz.english import is_plural, listing
+from scope_ptz.english import listing
 from scope_ptz.planner.grammar import instruction_tree as ast
+from scope_ptz.planner.grammar.binding.asked_things import asked_thing, with_other_thing
 from scope_ptz.planner.grammar.binding.commands import standing_command
 from scope_ptz.planner.grammar.binding.continuations import commands_of
-from scope_ptz.planner.grammar.binding.earlier_comparison import earlier_winners
+from scope_ptz.planner.grammar.binding.earlier_comparison import counts_of_tour, earlier_winners, last_two_presets
 from scope_ptz.planner.grammar.binding.embedded_questions import direct_question
+from scope_ptz.planner.grammar.binding.followups import is_adjective
+from scope_ptz.planner.grammar.binding.names import Names, UnresolvedError
+from scope_ptz.planner.grammar.binding.noun_heads import names_person, names_several
 from scope_ptz.planner.grammar.binding.offtopic import is_about_the_scene
+from scope_ptz.planner.grammar.binding.pending_questions import pending_step, with_thing
 from scope_ptz.planner.grammar.binding.plain_questions import plain_question
-from scope_ptz.planner.grammar.binding.preset_matching import match_exactly, match_preset, plausible_name
+from scope_ptz.planner.grammar.binding.preset_matching import match_exactly, match_preset
+from scope_ptz.planner.grammar.binding.question_pronouns import (
+    is_impersonal,
+    with_noun_for_one,
+    with_referents,
+    without_anticipation,
+)
 from scope_ptz.planner.grammar.binding.question_text import (
     bare_comparison,
     how_many_predicate,
     is_about_the_future,
     is_answered_by_counts,
-    is_impersonal,
     is_request_to_describe,
-    sought_thing,
     split_at_preset,
     two_questions,
-    with_antecedent,
+    with_subject,
 )
-from scope_ptz.planner.grammar.execution.answer_sentences import noun
 
-_NOT_OBJECTS = frozenset({"nothing", "around", "everywhere", "there", "here", "away", "about"})
-_ONES = re.compile(r"\bones?\b", re.IGNORECASE)
+_THE_THING_AND_IT = re.compile(r"\bthe \w+.*\b(it|they|them)\b")
 _RELATIVE_POSITION = re.compile(
     r"(?:(?:just|only|slightly|a (?:bit|little|touch|tad)|right|directly) )*"
     r"((?:to the )?(?:left|right) of|above|below|under|underneath|beneath|over|beyond|past|behind|beside|next to|in front of) \w",
     re.IGNORECASE,
 )
-
-if TYPE_CHECKING:
-    from scope_ptz.planner.base import PastTurn
-    from scope_ptz.tools.arguments import View
-
 
 _LOOKS = (
     ast.Count,
@@ -63,58 +64,23 @@ _LOOKS = (
 _MOVES = (ast.Move, ast.Home, ast.GoToPreset, ast.GoThere, ast.Back, ast.ZoomTo, ast.Track, ast.AtPlaces, ast.Loop, ast.Repeat)
 
 
-class UnresolvedError(Exception):
-    """A name cannot be resolved. The message is the question to ask the user."""
-
-
 @dataclass(slots=True)
-class Resolver:
+class Resolver(Names):
     """Resolves the names in the steps of one instruction.
 
     Attributes:
-        presets: The camera's presets; None if they are unknown, so that names are accepted as written.
-        conversation: The earlier turns, to which pronouns may refer.
-        antecedent: The description that a pronoun refers to.
-        preset: The preset that "there" refers to.
         has_compared: Whether an earlier step compares presets.
         has_counted: Whether an earlier step counts something.
-        whole_scene: Whether questions are about the whole scene instead of the current view.
         must_not_move: Whether the camera must not move.
         has_moved: Whether an earlier step of the instruction moves the camera.
         has_looked: Whether an earlier step looks for something, so that "if so" refers to what it found.
-        earlier_counts: The presets at which earlier turns counted objects, each with the objects' description.
     """
 
-    presets: tuple[str, ...] | None
-    conversation: tuple[PastTurn, ...] = ()
-    antecedent: str = ""
-    preset: str = ""
     has_compared: bool = False
     has_counted: bool = False
-    whole_scene: bool = False
     has_moved: bool = False
     has_looked: bool = False
     must_not_move: bool = False
-    earlier_counts: list[tuple[str, str]] = field(default_factory=list)
-
-    def __post_init__(self) -> None:
-        at = ""  # the preset at which the camera was
-        for turn in self.conversation:
-            for exchange in turn.exchanges:
-                for outcome in exchange.outcomes:
-                    arguments = outcome.call.arguments
-                    self.antecedent = str(arguments.get("description", "")) or self._sought(arguments) or self.antecedent
-                    if outcome.call.name == "go_to_preset" and outcome.error is None:
-                        self.preset = str(arguments.get("name", ""))
-                        at = self.preset
-                    elif outcome.call.name == "count_objects" and at:
-                        self.earlier_counts.append((at, str(arguments.get("description", ""))))
-                    elif outcome.call.name in {"adjust_ptz", "go_home", "zoom_to_object", "track_object"}:
-                        at = ""
-
-    def _sought(self, arguments: Mapping[str, object]) -> str:
-        """Return what the question of an earlier call looked for: "red van" for "is there a red van?"."""
-        return sought_thing(str(arguments.get("question", "")))
 
     def bind(self, steps: Sequence[ast.Step]) -> tuple[ast.Step, ...]:
         """Return the steps with all names resolved.
@@ -149,64 +115,6 @@ class Resolver:
         if isinstance(last, ast.ZoomTo):
             return ast.ZoomTo(thing)
         return ast.Count((thing,)) if isinstance(last, ast.Count) else step
-
-    # Names -------------------------------------------------------------------------------------------------------------
-    def thing(self, thing: ast.Thing) -> ast.Thing:
-        """Return a reference to an object with its pronoun resolved, and remember it for later pronouns."""
-        if thing.text.lower() in _NOT_OBJECTS:
-            raise UnresolvedError(f"What shall I look for {thing.text}?")
-        if thing.not_an_object and not (_ONES.search(thing.text) and self.antecedent):
-            raise UnresolvedError(f"I did not understand '{thing.text}'. Which thing do you mean?")
-        if (thing.text.endswith((" one", " ones")) or thing.text.startswith("ones ")) and not self.antecedent:
-            raise UnresolvedError(f"Which things do you mean by '{thing.text}'?")
-        if thing.text:
-            text = self._with_noun(thing.text)
-            self.antecedent = text
-            return replace(thing, text=text)
-        if not self.antecedent:
-            raise UnresolvedError("What do you mean by 'it'? Please name the thing.")
-        return ast.Thing(self.antecedent, definite=True)
-
-    def _with_noun(self, text: str) -> str:
-        """Replace "one" with the last noun: after cars, "the nearest one" means the nearest car."""
-        prepositions = r" (?:on|in|at|by|with|without|near|behind) "
-        parts = re.split(rf"{prepositions}| (?:not )?\w+ing ", self.antecedent)
-        is_in_phrase = len(parts) > 1 and re.search(rf"{prepositions}[\w ]*\bones?\b", text) is not None
-        head = parts[-1 if is_in_phrase else 0].split(" ")[-1]  # after cars on the red bridge: "cars on the blue one"
-        return _ONES.sub(lambda match: noun(head, 2 if match[0].lower() == "ones" else 1), text) if head else text
-
-    def place(self, ref: ast.PresetRef) -> ast.PresetRef:
-        """Return a reference with the exact name of the preset that it means."""
-        preset = self.find_place(ref)
-        if preset is None:
-            if self.presets is None:
-                raise UnresolvedError(f"I did not understand '{ref.name}' as the name of a preset. Which one do you mean?")
-            known = ", ".join(self.presets) or "none"
-            raise UnresolvedError(f"There is no preset '{ref.name}'. Presets: {known}. Which one do you mean?")
-        self.preset = preset
-        return ast.PresetRef(preset, explicit=True)
-
-    def find_place(self, ref: ast.PresetRef) -> str | None:
-        """Return the name of the preset that a reference means; None if there is no such preset."""
-        if self.presets is None:
-            if not ref.explicit and not plausible_name(ref.name):
-                return None
-            return ref.name if ref.number is None else ref.name.replace(" ", "-")
-        named = match_preset(ref.name, self.presets)
-        if named or ref.number is None:
-            return named
-        index = ref.number - 1 if ref.number > 0 else len(self.presets) + ref.number
-        return self.presets[index] if 0 <= index < len(self.presets) else None
-
-    def _places(self, refs: tuple[ast.PresetRef, ...]) -> tuple[ast.PresetRef, ...]:
-        if not refs:
-            if not self.presets:
-                raise UnresolvedError("Which presets do you mean? I know of none.")
-            return tuple(ast.PresetRef(name, explicit=True) for name in self.presets)
-        return tuple(self.place(ref) for ref in refs)
-
-    def _view(self, view: View | None) -> View:
-        return view or ("full" if self.whole_scene else "current")
 
     # Steps -------------------------------------------------------------------------------------------------------------
     def _bind(self, step: ast.Step) -> Sequence[ast.Step]:
@@ -297,13 +205,13 @@ class Resolver:
     def _ask(self, step: ast.Ask) -> Sequence[ast.Step]:
         if self.has_counted and is_answered_by_counts(step.question):
             return []
-        if self.conversation and (predicate := how_many_predicate(step.question)) and is_plural(self.antecedent.split(" ")[-1]):
-            return self._count(ast.Count((ast.Thing(f"{self.antecedent} {predicate}"),), step.view))
+        if self.conversation and self.topic and (predicate := how_many_predicate(step.question)):
+            return self._count(ast.Count((ast.Thing(pronoun="them", predicate=predicate),), step.view))
         if comparison := bare_comparison(step.question):
             return self._bind(self._earlier_comparison(comparison))
         if is_request_to_describe(step.question):
             return [ast.Ask("Describe the scene.", self._view(step.view))]
-        if not is_about_the_scene(f"{step.question} {self.antecedent if 'time' in step.question else ''}"):
+        if not is_about_the_scene(f"{step.question} {self.topic if 'time' in step.question else ''}"):
             raise UnresolvedError("I can only move the camera and answer questions about what it sees. What shall I look at?")
         if (two := two_questions(step.question)) is not None:
             return [*self._ask(replace(step, question=two[0])), *self._ask(ast.Ask(two[1], step.view))]
@@ -311,18 +219,32 @@ class Resolver:
             raise UnresolvedError("I cannot wait for something to happen. Shall I look for it now?")
         asked, close_up = plain_question(step.question)
         question, place = self._question_and_place(direct_question(asked) if step.embedded else asked)
-        question = with_antecedent(question, self.antecedent)
-        self.antecedent = sought_thing(question) or self.antecedent
+        question = self._with_names(question)
+        asked_about = asked_thing(question)
+        self.antecedent = asked_about.description if asked_about else self.antecedent
         zoom = [ast.ZoomTo(self.thing(ast.Thing(close_up, definite=True)))] if close_up and not self.must_not_move else []
         return [*place, *zoom, ast.Ask(question, self._view(step.view))]
 
+    def _with_names(self, question: str) -> str:
+        """Return a question with its pronouns and "one" replaced by what they refer to.
+
+        After a thing has been named in the same instruction, a question that names another one keeps its pronoun.
+        """
+        question = with_noun_for_one(without_anticipation(with_subject(question)), self._referent_of_ones)
+        return question if self.antecedent and _THE_THING_AND_IT.search(question) else with_referents(question, self.referent)
+
+    def _referent_of_ones(self, pronoun: str) -> str:  # noqa: ARG002 - has the signature of a referent
+        return self.topic
+
     def _earlier_comparison(self, comparison: ast.Comparison) -> ast.WhichPreset:
-        """Return the comparison of the two presets at which earlier turns last counted the same thing."""
-        for place, description in reversed(self.earlier_counts[:-1]):
-            last, counted = self.earlier_counts[-1]
-            if place != last and description == counted:
-                places = tuple(ast.PresetRef(name, explicit=True) for name in (place, last))
-                return ast.WhichPreset(ast.Thing(counted), comparison, places)
+        """Return the comparison of the presets at which earlier turns last counted the same thing."""
+        if self.earlier_counts and (tour := counts_of_tour(self.earlier_counts)):
+            places = tuple(ast.PresetRef(count.preset, explicit=True) for count in tour)
+            numbers = tuple(count.number for count in tour)
+            return ast.WhichPreset(ast.Thing(tour[0].description), comparison, places, numbers=numbers)
+        if self.earlier_counts and (two := last_two_presets(self.earlier_counts)) is not None:
+            places = tuple(ast.PresetRef(name, explicit=True) for name in two)
+            return ast.WhichPreset(ast.Thing(self.earlier_counts[-1].description), comparison, places)
         raise UnresolvedError("Which presets shall I compare, and what shall I count there?")
 
     def _question_and_place(self, question: str) -> tuple[str, list[ast.Step]]:
@@ -362,12 +284,46 @@ class Resolver:
         return [replace(step, thing=self.thing(step.thing))]
 
     def _whatabout(self, step: ast.WhatAbout) -> Sequence[ast.Step]:
-        thing = self.thing(step.thing)
-        if self.presets and (name := match_preset(thing.text, self.presets)):
+        if step.thing.text and self.presets and (name := match_preset(step.thing.text, self.presets)):
             return [ast.GoToPreset(ast.PresetRef(name, explicit=True)), *self._last_question()]
+        pending, topic = pending_step(self.conversation, self.presets or ()), self.topic
+        thing = self.thing(self._with_noun_if_bare(step.thing))
         if not self.conversation:
             return self._count(ast.Count((thing,)))
-        return [ast.Count((thing,), self._view(None))]
+        if pending is not None:
+            return self._bind(with_thing(pending, thing.text))
+        if step.thing.pronoun == "both" and self.foci and self.foci[-1].look in {"count_objects", "query_answer"}:
+            raise UnresolvedError(f"What shall I do with the {thing.text}?")
+        return [self._last_look_at(thing, topic)]
+
+    def _with_noun_if_bare(self, thing: ast.Thing) -> ast.Thing:
+        """Add the last noun to an adjective: "and the farthest?" after "which car is nearest?" means the farthest car."""
+        if " " in thing.text or not self.foci or not is_adjective(thing.text.lower()):
+            return thing
+        if not thing.definite:
+            return ast.Thing(predicate=thing.text)  # "and blue?"
+        return replace(thing, text=f"{thing.text} one")
+
+    def _last_look_at(self, thing: ast.Thing, topic: str) -> ast.Step:
+        """Return the last count, question, close-up or pursuit, of another thing.
+
+        Args:
+            thing: The other thing.
+            topic: What the last look was about.
+        """
+        last = self.foci[-1] if self.foci else None
+        match last.look if last else "count_objects":
+            case "zoom_to_object":
+                return ast.ZoomTo(thing)
+            case "track_object":
+                return ast.Track(thing)
+            case "query_answer" if last is not None:
+                question = with_other_thing(last.question, thing.text)
+                verb = "are" if names_several(thing.text) else "is"
+                is_person = names_person(topic)
+                return ast.Ask(question or f"{'Who' if is_person else 'What'} {verb} the {thing.text}?", self._view(None))
+            case _:
+                return ast.Count((thing,), self._view(None))
 
     def _last_question(self) -> list[ast.Step]:
         """Return the last count or question of the conversation as a step."""
@@ -435,7 +391,11 @@ class Resolver:
 
     def _whichpreset(self, step: ast.WhichPreset) -> Sequence[ast.Step]:
         self.has_compared = True
-        return [replace(step, thing=self.thing(step.thing), places=self._places(step.places))]
+        thing = self.thing(step.thing)
+        counted = [count for count in self.earlier_counts if count.description == thing.text]
+        if step.of_two and not step.places and counted and (two := last_two_presets(counted)) is not None:
+            return [replace(step, thing=thing, places=tuple(ast.PresetRef(name, explicit=True) for name in two))]
+        return [replace(step, thing=thing, places=self._places(step.places))]
 
     def _firstwith(self, step: ast.FirstWith) -> Sequence[ast.Step]:
         self.has_compared = True
@@ -444,7 +404,7 @@ class Resolver:
 
     def _compare(self, step: ast.Compare) -> Sequence[ast.Step]:
         places = [match_exactly(thing.text, self.presets or ()) for thing in (step.first, step.second)]
-        if all(places) and not self.antecedent:
+        if all(places) and not self.topic:
             raise UnresolvedError(f"What shall I count at {places[0]} and {places[1]}?")
         if all(places):
             return self._whichpreset(ast.WhichPreset(ast.Thing(), step.comparison, tuple(ast.PresetRef(p or "") for p in places)))
@@ -462,7 +422,7 @@ class Resolver:
             return ast.Readable(self.thing(condition.thing))
         if isinstance(condition, ast.Statement) and not condition.subject.text and is_impersonal(f"it {condition.predicate}"):
             return replace(condition, subject=ast.Thing("it"))
-        if isinstance(condition, ast.Statement) and not condition.subject.text and not self.antecedent and self.preset:
+        if isinstance(condition, ast.Statement) and not condition.subject.text and not self.topic and self.preset:
             self.antecedent = self.preset.replace("-", " ")  # "go to the yard, and if it is empty, go home"
         if isinstance(condition, ast.Statement):
             return replace(condition, subject=self.thing(condition.subject))
@@ -479,7 +439,7 @@ class Resolver:
             return ast.Negated(self.condition(condition.part))
         joined = replace(condition, parts=tuple(self.condition(part) for part in condition.parts))
         if all(isinstance(part, ast.Seen) for part in joined.parts):
-            self.antecedent = ""  # "if you find a person or a dog, zoom in on it" does not say on which one
+            self.antecedent, self.foci = "", ()  # "if you find a person or a dog, zoom in on it" does not say on which one
         return joined
 
 

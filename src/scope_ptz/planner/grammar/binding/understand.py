@@ -11,8 +11,10 @@ from scope_ptz.english.grammar.numbers import NUMBER_WORDS
 from scope_ptz.planner.grammar import instruction_tree as ast
 from scope_ptz.planner.grammar.answerable import answerable_questions, is_whole_question
 from scope_ptz.planner.grammar.binding.continuations import NOTHING_DONE, continuation_of
+from scope_ptz.planner.grammar.binding.followups import followup_of
+from scope_ptz.planner.grammar.binding.names import UnresolvedError
 from scope_ptz.planner.grammar.binding.offtopic import REFUSAL, is_harmful
-from scope_ptz.planner.grammar.binding.resolver import Resolver, UnresolvedError
+from scope_ptz.planner.grammar.binding.resolver import Resolver
 from scope_ptz.planner.grammar.binding.small_talk import reply_to_small_talk
 from scope_ptz.planner.grammar.consistency.check import (
     not_understood,
@@ -85,9 +87,12 @@ def _read(said: str, preset_names: tuple[str, ...] | None, conversation: Sequenc
     """Return the steps of a text, or a clarifying question."""
     parsed = parse(said, preset_names or ())
     try:
-        if parsed.steps is None:
+        steps = parsed.steps
+        if steps is None and conversation:
+            steps = followup_of(said, preset_names or ())
+        if steps is None:
             raise _question_about_unparsed(parsed)
-        bound = _without_repeated_visits(Resolver(preset_names, tuple(conversation)).bind(parsed.steps))
+        bound = _without_repeated_visits(Resolver(preset_names, tuple(conversation)).bind(steps))
     except UnresolvedError as unresolved:
         return Understanding(clarification=str(unresolved))
     if _NO_CLOSE_UP.search(said):

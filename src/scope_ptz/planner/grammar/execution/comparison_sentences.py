@@ -146,6 +146,8 @@ def best_preset_text(step: ast.WhichPreset, counts: Mapping[str, int], ranked: S
         amount: str = step.comparison
     else:
         amount = f"the {nth}{'most' if step.comparison == 'more' else 'fewest'}"
+    if step.numbers:
+        return f"Preset {ranked[0]} had {amount} {phrases.noun(step.thing.text, 2)}, with {counts[ranked[0]]}"
     return f"Preset {ranked[0]} shows {amount} {phrases.noun(step.thing.text, 2)}"
 
 

@@ -114,8 +114,9 @@ class ComparisonSteps(ConditionEvaluation):
 
     def _whichpreset(self, step: ast.WhichPreset) -> CallGenerator:
         counts = dict[str, int]()
-        for place in step.places:
+        for place in step.places if not step.numbers else ():
             counts[place.name] = yield from self._count_at(step.thing, place)
+        counts.update((place.name, number) for place, number in zip(step.places, step.numbers, strict=False))
         if step.any_of:
             showing = [name for name, count in counts.items() if count]
             self._last_was_yes, self._best_preset = bool(showing), showing[0] if showing else None
@@ -128,7 +129,8 @@ class ComparisonSteps(ConditionEvaluation):
             self._best_preset = ranked[0] if len(ranked) == 1 or self.assume_met else None
             self._note(f"{'Yes' if self._last_was_yes else 'No'}: {seen}")
             return
-        self._note(seen)
+        if not step.numbers:
+            self._note(seen)
         self._best_preset = ranked[0] if len(ranked) == 1 or (ranked and self.assume_met) else None
         self._note(sentences.best_preset_text(step, counts, ranked))
         if step.go:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -32,6 +32,9 @@ class WhichPreset:
         yes_no: Whether the answer is yes or no. The question is then whether the first preset shows the most, or with ``any_of``,
             whether any of the presets shows any of the objects.
         rank: The requested place in the order: 1 for the most, 2 for the second most.
+        numbers: How many objects earlier turns have counted at each of the presets, so that the camera need not move; empty if they
+            must be counted.
+        of_two: Whether the wording compares two presets: "which preset has more cars?", unlike "... the most cars?".
     """
 
     thing: Thing
@@ -41,6 +44,8 @@ class WhichPreset:
     any_of: bool = False
     yes_no: bool = False
     rank: int = 1
+    numbers: tuple[int, ...] = ()
+    of_two: bool = field(default=False, compare=False)
 
 
 @dataclass(frozen=True, slots=True)

@@ -40,11 +40,17 @@ class Thing:
         text: The description; empty for a pronoun.
         definite: Whether the description follows a definite article or a demonstrative.
         not_an_object: Whether the words cannot describe an object ("times", "closer").
+        pronoun: The pronoun in the user's words ("him"); empty if there is none, or if the thing is not mentioned at all.
+        owner: The possessive pronoun before the description ("its" of "its sign"); empty for none.
+        predicate: What must hold for the things that the pronoun refers to: "wear helmets" of "how many of them wear helmets?".
     """
 
     text: str = ""
     definite: bool = False
     not_an_object: bool = False
+    pronoun: str = field(default="", compare=False)
+    owner: str = field(default="", compare=False)
+    predicate: str = ""
 
 
 @dataclass(frozen=True, slots=True)

@@ -52,7 +52,7 @@ def read_step(source: Source, lexemes: Sequence[Lexeme], view: View | None) -> S
     ):
         return Ask("What text can you see?", view)  # "read everything you can see"
     if seen := full_match(
-        "(EVERY|all|each|ANY|DET)+ (of)? (DET)? (?P<thing>_+?) ((that|which)? SELF (can|do)? (SEE|"
+        "(?!(its|his|her|their))(EVERY|all|each|ANY|DET)+ (of)? (DET)? (?P<thing>_+?) ((that|which)? SELF (can|do)? (SEE|"
         "FIND)|INTURN|separately|VISIBLE)*",
         words,
     ):

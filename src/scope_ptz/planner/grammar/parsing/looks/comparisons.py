@@ -165,7 +165,8 @@ def _preset_comparison(source: Source, lexemes: Sequence[Lexeme]) -> Step | None
         go |= any(x.word == "whichever" for x in lexemes) and lexemes[0].word != "whichever"
         rank = round(match["nth"][0].value) if "nth" in match.names and match["nth"] else 1
         way = _comparison(match["way"]) if "way" in match.names else "more"
-        return WhichPreset(thing, way, places, go=go, rank=rank, yes_no=bool(places) and _is_yes_no(lexemes))
+        of_two = "way" in match.names and any(x.word in {"more", "fewer", "less"} for x in match["way"])
+        return WhichPreset(thing, way, places, go=go, rank=rank, yes_no=bool(places) and _is_yes_no(lexemes), of_two=of_two)
     if full_match(rf"{_SKIP} {_WHICH} {_SHOWS} (NONE|no|MORETHAN|ATLEAST|FEWERTHAN|ATMOST|EXACTLY) _+", lexemes) and any(
         x.has("PRESETNOUN", "PRESET") for x in lexemes[:6]
     ):

@@ -122,6 +122,8 @@ def _counted(
         view = "full"
     if (aside := full_match(f"(?P<thing>_+?) COMMA (?P<sum>{_IN_ALL}) COMMA (?P<rest>_+)", rest)) is not None:
         rest = (*aside["thing"], *aside["rest"])  # "how many vans, in total, can be seen?"
+    if (kinds := full_match(f"(?P<thing>_+) ({_IN_ALL}) COMMA _+ AND (DET)? (others|other|rest)", rest)) is not None:
+        rest = kinds["thing"]  # "how many cars are there altogether, taxis and others?"
     if (
         guess := full_match("(?P<thing>_+?) (would_you|MODAL SELF|do SELF) (say|reckon|think|guess) (?P<rest>_*)", rest)
     ) is not None:
@@ -137,6 +139,8 @@ def _counted(
         r"of? (of them|PRON|of those|more|there|BE|VISIBLE|SELF|can|SEE|now|NOW|are|again|HAVEV|got|have)*", rest
     ) and not any(x.has("FREE") for x in rest):
         return Count((Thing(),), view)
+    if how is not None and (share := _share_of_last(source, rest)) is not None:
+        return Count((share,), view)
     # "How many people wait?" counts people waiting.
     if (acting := full_match("(?P<thing>FREE{1,3}) (?P<verb>FREE)", rest)) is not None and how is not None:
         verb = acting["verb"][0].word
@@ -158,6 +162,20 @@ def _counted(
     if things := things_of(source, rest):
         return Count(things, view)
     return None
+
+
+def _share_of_last(source: Source, rest: Sequence[Lexeme]) -> Thing | None:
+    """Read "of them are walking" and "of those wear helmets" as a share of the things that were spoken about last."""
+    verbs = "wear|carry|hold|ride|sit|stand|walk|face|has|have|do not|does not"
+    match = full_match(f"(of)? (?P<those>them|those|these) (?P<predicate>(BE|HAVEV|DOV|{verbs}) (?P<rest>_+))", rest)
+    if match is None or match["rest"][0].has("VISIBLE", "SELF") or match["rest"][0].word == "there":
+        return None
+    if search("PAN|TILT|ZOOM|IF|DEG|THEN|(COMMA|AND) WHQ", rest):
+        return None
+    is_kind = match["predicate"][0].has("BE") and is_plural(match["rest"][-1].word) and is_noun_phrase(match["rest"])
+    if is_kind:
+        return None  # "how many of them are reefers"
+    return Thing(pronoun=match["those"][0].word, predicate=text_of(source, match["predicate"]))
 
 
 def _count_with_predicate(source: Source, rest: Sequence[Lexeme], view: View | None) -> Step | None:

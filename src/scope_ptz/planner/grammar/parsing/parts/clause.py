@@ -43,7 +43,7 @@ UNTIL_LIMIT = (
 SKIP = "(FILLER|FIRSTLY|LEADFILLER|QUOTE|COMMA)*"
 """The pattern for words at the beginning and end of a clause that add nothing."""
 
-ME = "(me|us|FILLER|SELF|back|again|out)*"
+ME = "(me|us|FILLER|(?!(its|their))SELF|back|again|out)*"
 """The pattern for the words after a verb of telling or showing, as in "show me"."""
 
 

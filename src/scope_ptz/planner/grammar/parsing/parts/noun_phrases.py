@@ -30,6 +30,7 @@ _LEAD = r"(me|us|FILLER|OFNOUN|all of|both of|any of|some of)*"
 _DETERMINERS = ("DET", "EVERY", "ANY")
 _DEFINITE = frozenset({"the", "that", "this", "these", "those", "all_the", "all_of_the", "each_of_the", "my", "our", "your"})
 _PRONOUN = re.compile(r"(?:it|them|they|that|this|those|these|him|her|that one|this one|he|she|one|the one)", re.IGNORECASE)
+_POSSESSIVES = frozenset({"its", "his", "her", "their"})
 _NO_NOUNS = frozenset({"than", "nor", "neither", "minus", "outnumber", "outnumbers", "exceed", "exceeds"})
 _RELATIVE = (
     (re.compile(r"\b(?:(?:who|that|which) )?(?:are|is|were|was)(?:n['’]?t| not)\b", re.IGNORECASE), "not"),
@@ -76,7 +77,7 @@ def thing_of(source: Source, lexemes: Sequence[Lexeme]) -> Thing | None:
     if full_match(r"(all|both|each)? (of)? PRON (one|ones|there|here)?", lexemes) and _PRONOUN.fullmatch(
         " ".join(x.word for x in lexemes)
     ):
-        return Thing()
+        return Thing(pronoun=next(x.word for x in lexemes if x.has("PRON")))
     is_list = search("(AND|OR) (the|a|an)|COMMA", lexemes) and not search("between", lexemes)
     if is_list or not is_noun_phrase(lexemes):
         return None  # several things
@@ -88,10 +89,11 @@ def thing_of(source: Source, lexemes: Sequence[Lexeme]) -> Thing | None:
     while first < len(lexemes) - 1 and lexemes[first].has(*_DETERMINERS) and not lexemes[first].has("SOMEONE", "NUM"):
         first += 1
     definite = any(x.word in _DEFINITE for x in lexemes[:first])
+    owner = next((x.word for x in lexemes[:first] if x.word in _POSSESSIVES), "")
     text = without_function_words(text_of(source, lexemes[first:]))
     core = without_function_words(text_of(source, trimmed(lexemes[first:], *_AROUND_NOUN_PHRASE)))
     is_read = looks_like_description(text) or looks_like_description(core) or _is_compound_noun(lexemes[first:])
-    return Thing(text, definite=definite) if is_read else None
+    return Thing(text, definite=definite, owner=owner) if is_read else None
 
 
 def _is_compound_noun(lexemes: Sequence[Lexeme]) -> bool:

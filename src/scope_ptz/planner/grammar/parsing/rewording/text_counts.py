@@ -81,7 +81,8 @@ COUNTS = (
     (r"\b(?:no\.|qty\.?|quantity) (?:of )?(?=[a-z])", "number of "),
     (
         r"\b(on|of|at|the|count|count me|find|see|follow) them (?!for|at|in|on|across|until|as|with|to|from|and|is"
-        r"|was|towards|past|all)(?=(?:\w+ )?\w+s\b)",
+        r"|was|towards|past|all|\w+ing\b|wears?\b|ha(?:s|ve)\b|carr(?:y|ies)\b|holds?\b|rides?\b|sits?\b|stands?\b|walks?\b)"
+        r"(?=(?:\w+ )?\w+s\b)",
         r"\1 the ",
     ),
     (

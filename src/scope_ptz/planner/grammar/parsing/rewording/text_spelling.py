@@ -69,7 +69,7 @@ SPELLING = (
     (r"(?<=\w) n (?=[a-z])", " and "),
     (r"\b(where['’]?s|where is|off|is) me (?!the\b|an?\b|and\b|please\b|some\b|all\b)(?=\w+)", r"\1 my "),
     (r"\bquik(?=ly)?", "quick"),
-    (r"\bits (?=\w+ing\b|an? |the |not |too |so |been |just |only |all |for (?:the|my|our|an?)\b)", "it's "),
+    (r"(?<!are )(?<!is )\bits (?=\w+ing\b|an? |the |not |too |so |been |just |only |all |for (?:the|my|our|an?)\b)", "it's "),
     (r"\b(third|quarter|half|tally|pair|couple|bit|lot|end|side|top) o (?=\w)", r"\1 of "),
     (r"\b(back|go|over|come) 2 (?=the\b|[a-z])(?!deg|time|step|more|notch|click|x\b)", r"\1 to "),
     (r"\bif its\b", "if it's"),

@@ -1,0 +1,172 @@
+"""Find the thing that a question asks about: the words of the question that describe it, and its description."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+
+from scope_ptz.english import singular
+from scope_ptz.english.grammar.questions import question_tree as tree
+from scope_ptz.english.grammar.questions.question_parser import parse_description, parse_question
+from scope_ptz.english.grammar.questions.recognition import is_description
+from scope_ptz.planner.grammar.binding.noun_heads import names_several, without_predicate
+
+_MAX_WORDS = 16  # longer questions are not searched, because the search takes quadratic time
+_ARTICLE = re.compile(
+    r"\b(?:(?:an?|any|some|each|every|all|this|that|these|those)|(?:(?:any|each|all|some)\s+of\s+)?(?:the|these|those))\s+",
+    re.IGNORECASE,
+)
+_PRONOUNS = frozenset({
+    "it", "he", "she", "they", "him", "her", "them", "one", "ones", "this", "that", "these", "those", "there", "thing", "things",
+    "anything", "something", "everything", "text", "you", "who", "what",
+})  # fmt: skip
+"""Words that describe no thing of their own."""
+_WHO = re.compile(r"who(?:['’]s| is| are| has| have|se)?\s+|who(?=\w)", re.IGNORECASE)
+_WHICH = re.compile(
+    r"(?:which|what)\s+(?:of\s+(?:the|these|those)\s+)?(?P<noun>.+?)\s+(?P<verb>is|are|has|have|does|do|looks?|wears?|carr(?:y|ies)|holds?)\s+"
+    r"(?P<rest>.+)",
+    re.IGNORECASE,
+)
+_PLAIN_ARTICLES = frozenset({"the", "any", "some"})
+_VERB_BEFORE = re.compile(r"\b(?:is|are|does|do|has|have) $", re.IGNORECASE)
+_VERBS = {"has": "with", "have": "with", "wear": "wearing", "carry": "carrying", "hold": "holding"}
+_PERSON = frozenset({"anyone", "anybody", "someone", "somebody", "everyone", "everybody"})
+_OWNER = re.compile(r"(.+\w)['’]s? \w")
+_ANYONE = re.compile(r"\b(?:any|some|every)(?:one|body)\b", re.IGNORECASE)
+
+
+@dataclass(frozen=True, slots=True)
+class AskedThing:
+    """The thing that a question asks about.
+
+    Attributes:
+        description: Its description, such as "car" for "what colour is the car?" and "nearest car" for "which car is nearest?".
+        start: Where the words that describe it begin in the question, so that another thing can take their place.
+        end: Where these words end.
+    """
+
+    description: str
+    start: int
+    end: int
+
+
+@lru_cache(maxsize=512)
+def asked_thing(question: str) -> AskedThing | None:
+    """Return the thing that a question asks about; None if it asks about no thing, or about several."""
+    text = question.rstrip("?!. ")
+    words = list(re.finditer(r"\S+", text))
+    if not 0 < len(words) <= _MAX_WORDS:
+        return None
+    asked = parse_question(question)
+    tests = asked.tests if isinstance(asked, tree.What) else ()
+    if asked is not None and (tests or _WHO.match(text)) and (found := _with_predicate(text, tests)) is not None:
+        return found
+    described = _described(asked)
+    if described is None or len(described.phrases) != 1:
+        return None
+    plain = _without_article(described)
+    for start in reversed(range(len(words))):
+        for end in range(len(words), start, -1):
+            span = text[words[start].start() : words[end - 1].end()].rstrip(",;")
+            if is_description(span) and _without_article(parse_description(span)) == plain:
+                return _asked(text, asked, words[start].start(), words[start].start() + len(span))
+    return None
+
+
+def with_other_thing(question: str, description: str) -> str | None:
+    """Return the same question about another thing: "what colour is the green lorry?"; None if it asks about no thing."""
+    thing = asked_thing(question)
+    if thing is None or thing.end <= thing.start:
+        return None
+    article = _ARTICLE.match(question[thing.start : thing.end])
+    is_numbered = description.split(" ")[-1].isdigit()  # "dock 3"
+    kept = "" if is_numbered else article[0] if article and article[0].lower().strip() in _PLAIN_ARTICLES else "the "
+    before = _VERB_BEFORE.search(question[: thing.start])
+    lead = question[: thing.start]
+    if before is not None:
+        lead = lead[: before.start()] + _form(before[0], plural=names_several(description))
+    return f"{lead}{kept}{description}{question[thing.end :]}"
+
+
+def _form(verb: str, *, plural: bool) -> str:
+    """Return "are " for "is " before a plural, and the reverse."""
+    pairs = {"is": "are", "does": "do", "has": "have"}
+    forms = pairs if plural else {several: one for one, several in pairs.items()}
+    return f"{forms.get(verb.strip().lower(), verb.strip())} "
+
+
+def _described(question: tree.Question | None) -> tree.Description | None:
+    """Return the description of the thing that a question asks about; None for questions about no thing or about several."""
+    match question:
+        case tree.YesNo(subject=what):
+            return what
+        case tree.IsA(subject=what):
+            return what
+        case (
+            tree.Exists(what=what) | tree.Count(what=what) | tree.Ask(what=what) | tree.Read(what=what) | tree.Price(what=what)
+            | tree.Time(what=what) | tree.Where(what=what) | tree.Quarter(what=what) | tree.What(what=what)
+            | tree.KindOf(what=what) | tree.Identify(what=what) | tree.HowFar(what=what) | tree.Describe(what=what)
+            | tree.TextExists(what=what)
+        ):  # fmt: skip
+            return what
+        case _:
+            return None
+
+
+def _without_article(description: tree.Description) -> tree.Description:
+    return tree.Description(tuple(tree.Phrase(p.words, p.tests, p.order, p.ordinal, p.amount) for p in description.phrases))
+
+
+def _asked(text: str, asked: tree.Question | None, start: int, end: int) -> AskedThing | None:
+    """Return the thing that a span of a question describes.
+
+    The grammar reads a predicate as part of the noun phrase ("is the bus moving?"). It is left out, unless it says which person is
+    meant ("is anyone wearing a helmet?").
+    """
+    noun_phrase = text[start:end]
+    first = noun_phrase.split(" ")[0].lower()
+    if first in _PRONOUNS:
+        return None
+    description = noun_phrase
+    if isinstance(asked, tree.YesNo):
+        with_rest = without_predicate(text[start:])
+        is_marked = text[end:].startswith(" with ") and len(with_rest) < len(text) - start  # "is the man with an umbrella walking?"
+        description = with_rest if is_marked else without_predicate(noun_phrase)
+        if not description:
+            return None
+        end = start + len(description)
+        if first in _PERSON:
+            description = text[start:]
+    article = next((match for match in _ARTICLE.finditer(text) if match.end() == start), None)
+    start = article.start() if article else start
+    if (owner := _OWNER.match(description)) is not None:
+        return AskedThing(owner[1], start, end - len(description) + len(owner[1]))  # "what colour is the worker's helmet?"
+    return AskedThing(_ANYONE.sub("person", description), start, end)
+
+
+def _with_predicate(text: str, tests: Sequence[tree.Test]) -> AskedThing | None:
+    """Return the thing of "which car is nearest?" ("nearest car") and "who is at the kiosk?" ("person at the kiosk")."""
+    order = next((test for test in tests if isinstance(test, tree.Order)), None)
+    if (who := _WHO.match(text)) is not None:
+        verb, rest = who[0].split()[-1].lower() if " " in who[0].strip() else "", text[who.end() :]
+        noun, start = "person", who.start()
+        is_has = who[0].split()[-1].lower() in {"has", "have"}
+        if rest.split(" ")[0].lower() in _PRONOUNS or (_ARTICLE.match(rest) and not is_has):
+            return None  # "who's there?", "who is the man on the left?"
+    elif (which := _WHICH.fullmatch(text)) is not None:
+        verb, rest, noun, start = which["verb"].lower(), which["rest"], which["noun"], which.start("noun")
+    else:
+        return None
+    if noun.split(" ")[-1].lower() in _PRONOUNS:
+        return None
+    if order is not None:
+        rank = re.sub(r"^the | to (?:the camera|us|you)$", "", rest, flags=re.IGNORECASE)
+        return AskedThing(f"{singular(noun)} {rank}" if " " in rank else f"{rank} {singular(noun)}", start, start)
+    first, _, tail = rest.partition(" ")
+    verb = {"doesn't": "without", "don't": "without"}.get(verb, verb)
+    if first.lower() in {"wears", "wear", "carries", "carry", "holds", "hold", "has", "have"}:
+        verb, rest = re.sub(r"ies$", "y", first.lower()).removesuffix("s") if first.lower() != "has" else "has", tail
+    joint = _VERBS.get(re.sub(r"ies$", "y", verb).removesuffix("s") if verb not in {"has", "is"} else verb, "")
+    return AskedThing(" ".join(x for x in (noun, joint, rest) if x), start, start)

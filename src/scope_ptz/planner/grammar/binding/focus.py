@@ -1,0 +1,165 @@
+"""What the earlier turns of a conversation were about: the things that pronouns, "one" and short follow-ups refer to."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Literal
+
+from scope_ptz.english.grammar.questions.recognition import looks_like_description
+from scope_ptz.planner.grammar.binding.asked_things import asked_thing
+from scope_ptz.planner.grammar.binding.noun_heads import head_noun, may_name_person, names_animal, names_person, names_several
+from scope_ptz.planner.grammar.execution.answer_sentences import noun
+
+if TYPE_CHECKING:
+    from scope_ptz.planner.base import PastTurn, ToolOutcome
+
+_MAX_TURNS = 30  # maximum number of earlier turns that are considered
+_RECENT = 3  # "it" skips people for a thing only this far back
+_SHARE = re.compile(
+    r"\bof (?:them|those|these)\b|^(?:and )?how many (?:are|have|wear|carry|hold)\b|^(?:and|what about|how about|now|any)\b",
+    re.IGNORECASE,
+)
+"""Wordings that narrow what the turn before was about."""
+
+_STATED_NUMBER = re.compile(r"\b(\d+) (?:[\w'’-]+ ){0,3}?([\w'’-]+)")
+
+_EXIST = re.compile(r"(?:yes, )?there are (\d+) ", re.IGNORECASE)
+_LISTED = re.compile(r"((?:An?|\d+) .+) are ")
+"""An answer that lists the things: "A child, a man with a hat and 2 women are waiting."."""
+
+PERSONAL = frozenset({"he", "him", "his", "she", "her", "hers", "himself", "herself"})
+"""Pronouns for one person, or for an animal."""
+
+PLURAL = frozenset({"they", "them", "their", "theirs", "these", "those", "ones", "both"})
+"""Pronouns for several things, or for a person whose sex is unknown."""
+
+OF_THEM = "of them"
+"""Stands for the pronoun of "how many of them", which refers to several things and not to a single person."""
+
+Look = Literal["count_objects", "query_answer", "zoom_to_object", "track_object"]
+
+
+@dataclass(frozen=True, slots=True)
+class Focus:
+    """What one look of an earlier turn was about.
+
+    Attributes:
+        description: The things, as they were looked for: "worker in a blue helmet".
+        number: How many there are; None if the result does not say.
+        look: The tool that looked.
+        question: The question that was asked; empty for other looks.
+        whole: The things of which these are a share: "workers" after "how many of them wear helmets?"; empty if they are no share.
+        is_chosen: Whether the camera chose the thing among several that matched, to which "they" still refers.
+    """
+
+    description: str
+    number: int | None
+    look: Look
+    question: str = ""
+    whole: str = ""
+    is_chosen: bool = False
+
+    @property
+    def is_several(self) -> bool:
+        """Whether it is known to be several things, so that a pronoun in the singular does not say which one is meant."""
+        return names_several(self.description) if self.number is None else self.number > 1
+
+    @property
+    def one(self) -> str:
+        """The description of one of the things: "taxi" after a count of taxis."""
+        return noun(self.description, 1) if names_several(self.description) else self.description
+
+
+def foci_of(conversation: Sequence[PastTurn]) -> tuple[Focus, ...]:
+    """Return what the looks of a conversation were about, oldest first. Looks that failed are left out."""
+    foci: list[Focus] = []
+    for turn in conversation[-_MAX_TURNS:]:
+        before = foci[-1] if foci else None
+        outcomes = [outcome for exchange in turn.exchanges for outcome in exchange.outcomes if outcome.error is None]
+        found = [focus for outcome in outcomes for focus in _foci_of_look(outcome)]
+        is_share = before is not None and _SHARE.search(turn.instruction) is not None
+        foci += [replace(f, whole=_shared(before, f)) if is_share and before is not None else f for f in found]
+    return tuple(foci)
+
+
+def _shared(before: Focus, focus: Focus) -> str:
+    """Return the things of which a look considered a share, if they are of the same kind as what it found; otherwise nothing."""
+    whole = before.whole or before.description
+    if before.look != "count_objects" and not before.is_several:
+        return ""
+    return whole if noun(head_noun(whole), 1) == noun(head_noun(focus.description), 1) else ""
+
+
+def _foci_of_look(outcome: ToolOutcome) -> list[Focus]:
+    result, arguments = outcome.result or {}, outcome.call.arguments
+    description = str(arguments.get("description", ""))
+    match outcome.call.name:
+        case "count_objects":
+            number = result.get("count")
+            return [Focus(description, number, "count_objects")]
+        case "zoom_to_object":
+            matches = result.get("matches") if result.get("found") else None
+            focus = Focus(description, matches, "zoom_to_object")
+            chosen = str(result.get("chosen") or "")
+            is_named = matches is not None and matches > 1 and looks_like_description(chosen)
+            return [focus, Focus(chosen, 1, "zoom_to_object", is_chosen=True)] if is_named else [focus]
+        case "track_object":
+            return [Focus(description, None, "track_object")]
+        case "query_answer":
+            question = str(arguments.get("question", ""))
+            if (thing := asked_thing(question)) is None:
+                return []
+            number = _stated_number(str(result.get("answer", "")), thing.description)
+            return [Focus(thing.description, number, "query_answer", question)]
+        case _:
+            return []
+
+
+def _stated_number(answer: str, description: str) -> int | None:
+    """Return how many things an answer names: "There are 2 forklifts: ..." or "A child and 2 men are waiting."; None if unclear."""
+    if answer.lower().startswith("no"):
+        return None  # "No, none of the 3 people is walking."
+    if (exist := _EXIST.match(answer)) is not None:
+        return int(exist[1])
+    several = head_noun(noun(description, 2)).lower()
+    if several == "persons":
+        several = "people"
+    stated = next((int(match[1]) for match in _STATED_NUMBER.finditer(answer) if match[2].lower() == several), None)
+    if stated is not None or (listed := _LISTED.match(answer)) is None:
+        return stated
+    return sum(int(match[1]) if (match := re.match(r"(\d+) ", item)) else 1 for item in re.split(r", | and (?=an? |\d)", listed[1]))
+
+
+def referent(foci: Sequence[Focus], pronoun: str) -> Focus | None:
+    """Return what a pronoun refers to; None if the conversation was about nothing suitable.
+
+    "He" and "she" are people or animals. "It" is a thing if one was spoken about recently. "They" are several things, or people.
+
+    Args:
+        foci: What the conversation was about, oldest first.
+        pronoun: The pronoun, in lower case.
+    """
+    latest = foci[-1] if foci else None
+    if pronoun == OF_THEM:
+        groups = (focus for focus in reversed(foci) if focus.is_several or focus.whole or focus.look == "count_objects")
+        return next(groups, latest)
+    if pronoun in PERSONAL:
+        people = (focus for focus in reversed(foci) if names_person(focus.description) or names_animal(focus.description))
+        return latest if latest is not None and may_name_person(latest.description) else next(people, None)
+    if pronoun in PLURAL:
+        several = (f for f in reversed(foci) if not f.is_chosen and (f.is_several or names_person(f.description)))
+        return next(several, latest)
+    things = (focus for focus in reversed(foci[-_RECENT:]) if not names_person(focus.description))
+    return next(things, latest)
+
+
+WHICH_ONE = "Which of the "
+"""How the question begins that asks which of several things a pronoun means."""
+
+
+def which_one(focus: Focus) -> str:
+    """Return the question about a pronoun in the singular that may refer to several things."""
+    number = f"{focus.number} " if focus.number else ""
+    return f"{WHICH_ONE}{number}{noun(focus.description, 2)} do you mean?"

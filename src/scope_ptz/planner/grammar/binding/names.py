@@ -1,0 +1,175 @@
+"""Resolve the names in an instruction: what pronouns and "one" refer to, and which presets are meant."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
+
+from scope_ptz.planner.grammar import instruction_tree as ast
+from scope_ptz.planner.grammar.binding.earlier_comparison import EarlierCount, counts_at_presets, last_preset
+from scope_ptz.planner.grammar.binding.focus import OF_THEM, PERSONAL, PLURAL, Focus, foci_of, referent, which_one
+from scope_ptz.planner.grammar.binding.narrowing import is_worn, narrowed, with_noun
+from scope_ptz.planner.grammar.binding.noun_heads import may_name_person, names_person
+from scope_ptz.planner.grammar.binding.preset_matching import match_preset, plausible_name
+from scope_ptz.planner.grammar.execution.answer_sentences import noun
+
+if TYPE_CHECKING:
+    from scope_ptz.planner.base import PastTurn
+    from scope_ptz.tools.arguments import View
+
+_NOT_OBJECTS = frozenset({"nothing", "around", "everywhere", "there", "here", "away", "about"})
+_ONES = re.compile(r"\bones?\b", re.IGNORECASE)
+_OBJECT_PRONOUN = re.compile(
+    r"\b(?:of|to|behind|beside|near|above|below|under|on|in|by|around|with|opposite|from|than) (?P<pronoun>it|him|her|them)$",
+    re.IGNORECASE,
+)
+
+
+class UnresolvedError(Exception):
+    """A name cannot be resolved. The message is the question to ask the user."""
+
+
+@dataclass(slots=True)
+class Names:
+    """Resolves the names of one instruction.
+
+    Attributes:
+        presets: The camera's presets; None if they are unknown, so that names are accepted as written.
+        conversation: The earlier turns, to which pronouns may refer.
+        antecedent: The description in this instruction that a pronoun refers to; empty if it has named no thing yet.
+        preset: The preset that "there" refers to.
+        whole_scene: Whether questions are about the whole scene instead of the current view.
+        foci: What the earlier turns were about, oldest first; empty once this instruction leaves open what a pronoun refers to.
+        earlier_counts: The counts that earlier turns made at presets, oldest first.
+    """
+
+    presets: tuple[str, ...] | None
+    conversation: tuple[PastTurn, ...] = ()
+    antecedent: str = ""
+    preset: str = ""
+    whole_scene: bool = False
+    foci: tuple[Focus, ...] = ()
+    earlier_counts: Sequence[EarlierCount] = field(default_factory=tuple)
+
+    def __post_init__(self) -> None:
+        self.foci = foci_of(self.conversation)
+        self.preset = last_preset(self.conversation)
+        self.earlier_counts = counts_at_presets(self.conversation)
+
+    @property
+    def topic(self) -> str:
+        """The description of the thing that was named last, in this instruction or before; empty if there is none."""
+        return self.antecedent or (self.foci[-1].description if self.foci else "")
+
+    def referent(self, pronoun: str) -> str:
+        """Return the description that a pronoun refers to; empty if nothing has been named yet.
+
+        Args:
+            pronoun: The pronoun in lower case; empty for a thing that is left out, as in "how many?".
+
+        Raises:
+            UnresolvedError: The pronoun may refer to several things, or to a person although none has been named.
+        """
+        if self.antecedent and (pronoun not in PERSONAL or may_name_person(self.antecedent)):
+            return self.antecedent
+        if not self.foci:
+            return ""
+        found = referent(self.foci, pronoun)
+        if found is None:
+            raise UnresolvedError(f"Who do you mean by '{pronoun}'? Please name the person.")
+        if pronoun == OF_THEM:
+            return found.whole or found.description
+        if not pronoun or pronoun in PLURAL:
+            return found.description
+        if found.is_several:
+            raise UnresolvedError(which_one(found))
+        return found.one
+
+    def thing(self, thing: ast.Thing) -> ast.Thing:
+        """Return a reference to an object with its pronouns resolved, and remember it for later pronouns."""
+        if thing.text.lower() in _NOT_OBJECTS:
+            raise UnresolvedError(f"What shall I look for {thing.text}?")
+        if thing.not_an_object and not (_ONES.search(thing.text) and self.topic):
+            raise UnresolvedError(f"I did not understand '{thing.text}'. Which thing do you mean?")
+        if (thing.text.endswith((" one", " ones")) or thing.text.startswith("ones ")) and not self.topic:
+            raise UnresolvedError(f"Which things do you mean by '{thing.text}'?")
+        if thing.text:
+            text = self._with_owner(replace(thing, text=self._with_object(self._with_noun(thing.text))))
+            self.antecedent = text
+            return replace(thing, text=text)
+        if not (
+            description := self.referent(OF_THEM if thing.predicate and thing.pronoun not in {"those", "these"} else thing.pronoun)
+        ):
+            if thing.pronoun in PERSONAL:
+                raise UnresolvedError(f"Who do you mean by '{thing.pronoun}'? Please name the person.")
+            word = thing.pronoun if thing.pronoun and self.conversation else "it"
+            raise UnresolvedError(f"What do you mean by '{word}'? Please name the thing.")
+        self.antecedent = narrowed(description, thing.predicate) if thing.predicate else description
+        return ast.Thing(self.antecedent, definite=True)
+
+    def _with_noun(self, text: str) -> str:
+        """Replace "one" with the last noun: after cars, "the nearest one" means the nearest car."""
+        if not _ONES.search(text):
+            return text
+        if not self.antecedent:
+            return with_noun(text, self._ones(text))
+        antecedent = self.antecedent
+        prepositions = r" (?:on|in|at|by|with|without|near|behind) "
+        parts = re.split(rf"{prepositions}| (?:not )?\w+ing ", antecedent)
+        is_in_phrase = len(parts) > 1 and re.search(rf"{prepositions}[\w ]*\bones?\b", text) is not None
+        head = parts[-1 if is_in_phrase else 0].split(" ")[-1]  # after cars on the red bridge: "cars on the blue one"
+        return _ONES.sub(lambda match: noun(head, 2 if match[0].lower() == "ones" else 1), text) if head else text
+
+    def _ones(self, text: str) -> str:
+        """Return the earlier description to which "one" refers: of a person for "the one with the blue helmet"."""
+        wears = is_worn(text)
+        people = (focus.description for focus in reversed(self.foci) if names_person(focus.description))
+        return next(people, self.topic) if wears else self.topic
+
+    def _with_object(self, text: str) -> str:
+        """Replace a pronoun after a preposition by an earlier thing: "man next to it" becomes "man next to the van"."""
+        match = _OBJECT_PRONOUN.search(text)
+        if match is None or self.antecedent or not self.foci:
+            return text
+        return f"{text[: match.start('pronoun')]}the {self.referent(match['pronoun'].lower())}"
+
+    def _with_owner(self, thing: ast.Thing) -> str:
+        """Return the description of a part of an earlier thing: "its sign" becomes "sign of the post office"."""
+        if not thing.owner or self.antecedent or not self.foci:
+            return thing.text
+        return f"{thing.text} of the {self.referent(thing.owner)}"
+
+    def place(self, ref: ast.PresetRef) -> ast.PresetRef:
+        """Return a reference with the exact name of the preset that it means."""
+        preset = self.find_place(ref)
+        if preset is None:
+            if self.presets is None:
+                raise UnresolvedError(f"I did not understand '{ref.name}' as the name of a preset. Which one do you mean?")
+            known = ", ".join(self.presets) or "none"
+            raise UnresolvedError(f"There is no preset '{ref.name}'. Presets: {known}. Which one do you mean?")
+        self.preset = preset
+        return ast.PresetRef(preset, explicit=True)
+
+    def find_place(self, ref: ast.PresetRef) -> str | None:
+        """Return the name of the preset that a reference means; None if there is no such preset."""
+        if self.presets is None:
+            if not ref.explicit and not plausible_name(ref.name):
+                return None
+            return ref.name if ref.number is None else ref.name.replace(" ", "-")
+        named = match_preset(ref.name, self.presets)
+        if named or ref.number is None:
+            return named
+        index = ref.number - 1 if ref.number > 0 else len(self.presets) + ref.number
+        return self.presets[index] if 0 <= index < len(self.presets) else None
+
+    def _places(self, refs: tuple[ast.PresetRef, ...]) -> tuple[ast.PresetRef, ...]:
+        if not refs:
+            if not self.presets:
+                raise UnresolvedError("Which presets do you mean? I know of none.")
+            return tuple(ast.PresetRef(name, explicit=True) for name in self.presets)
+        return tuple(self.place(ref) for ref in refs)
+
+    def _view(self, view: View | None) -> View:
+        return view or ("full" if self.whole_scene else "current")

@@ -1,0 +1,93 @@
+"""Narrow a description by a predicate: cars that are "black", workers that "wear helmets", people "in the right half"."""
+
+from __future__ import annotations
+
+import re
+
+from scope_ptz.english import COLOURS
+from scope_ptz.english.grammar.lexicon import lexicon, nouns_in
+from scope_ptz.english.grammar.parts_of_speech import parts_of_speech
+from scope_ptz.english.grammar.questions import question_tree as tree
+from scope_ptz.english.grammar.questions.question_parser import parse_description
+from scope_ptz.planner.grammar.binding.noun_heads import bare_noun
+from scope_ptz.planner.grammar.execution.answer_sentences import head_and_rest, noun
+
+_BOUNDARY = re.compile(
+    r"\s(?=(?:(?:not )?(?:in|on|at|near|behind|beside|under|above|between|from|inside|outside|next|with|without|to the|along|"
+    r"across|around|opposite|saying|facing|that|which|who)|(?:not )?\w+ing)\b)"
+)
+_VERBS = {
+    "wear": "wearing", "wears": "wearing", "have": "with", "has": "with", "carry": "carrying", "carries": "carrying",
+    "hold": "holding", "holds": "holding", "ride": "riding", "sit": "sitting", "stand": "standing", "walk": "walking",
+    "say": "saying", "face": "facing",
+}  # fmt: skip
+_ONES = re.compile(r"\bones?\b", re.IGNORECASE)
+_WEARING = re.compile(r"\b(?:with|without|wearing|in) (?:the |an? )?(.+)$", re.IGNORECASE)
+_ITEM = re.compile(r"\b(?:wearing|with|without|carrying|holding) (?:an? |the )?((?:\w+ ){0,2}\w+)$", re.IGNORECASE)
+_CLOTHES = frozenset({"hat", "jacket", "vest", "clothes", "hard hat", "trousers", "dress", "skirt", "scarf", "shoes"})
+_POSTURES = frozenset(
+    {"sitting", "standing", "walking", "kneeling", "lying", "running", "crouching", "cycling", "parked", "moving"}
+)
+
+
+def as_modifier(predicate: str) -> str:
+    """Return a predicate as words for a noun: "wearing helmets" for "wear helmets" and "are wearing helmets"."""
+    words = re.sub(r"^(?:is|are|was|were)\s+(?=\w)", "", predicate.strip(), flags=re.IGNORECASE)
+    if negated := re.match(r"(?:do|does)(?: not|n['’]t) (?:have|wear) ", words, re.IGNORECASE):
+        return f"without {words[negated.end() :]}"
+    first, _, rest = words.partition(" ")
+    return " ".join(x for x in (_VERBS.get(first.lower(), first), rest) if x)
+
+
+def narrowed(description: str, predicate: str) -> str:
+    """Return a description of those things for which a predicate also holds.
+
+    What the predicate contradicts is replaced: of "people in the left half", "in the right half" leaves "people in the right half".
+    """
+    modifier = as_modifier(predicate)
+    head, rest = head_and_rest(description)
+    kind = _kind(modifier)
+    parts = [part for part in _BOUNDARY.split(rest.strip()) if part and _kind(part) != kind] if rest else []
+    words = head.split(" ")
+    if modifier.lower() in COLOURS or _is_adjective(modifier):
+        front = [word for word in words[:-1] if not (word.lower() in COLOURS and modifier.lower() in COLOURS)]
+        return " ".join([modifier, *front, words[-1], *parts])
+    if kind == "posture":
+        words = [word for word in words if word.lower() not in _POSTURES] or words
+    return " ".join([*words, *parts, modifier])
+
+
+def _is_adjective(text: str) -> bool:
+    """Return whether text is one word that can stand before a noun, as in "broken windows"."""
+    return " " not in text and not text.endswith("ing") and "ADJ" in parts_of_speech(text.lower())
+
+
+def _kind(modifier: str) -> str:
+    """Return what a modifier says: "place", "clothes", "posture", or the modifier itself for anything else."""
+    first = modifier.removeprefix("not ").split(" ")[0].lower()
+    if first in _POSTURES:
+        return "posture"
+    tests = {type(test) for phrase in parse_description(f"thing {modifier}").phrases for test in phrase.tests}
+    return "place" if tree.Region in tests else "clothes" if tree.Has in tests and first in {"wearing", "in"} else modifier
+
+
+def last_item(description: str) -> str:
+    """Return what each of several people wears or carries: "helmet" for "workers wearing helmets"; empty for nothing."""
+    matches = list(_ITEM.finditer(description))
+    return noun(matches[-1][1], 1) if matches else ""
+
+
+def with_noun(phrase: str, description: str) -> str:
+    """Replace "one" by the noun of a description: "nearest one" becomes "nearest taxi" after "how many black taxis are there?"."""
+    head = bare_noun(description)
+    return _ONES.sub(lambda match: noun(head, 2 if match[0].lower() == "ones" else 1), phrase) if head else phrase
+
+
+def is_worn(phrase: str) -> bool:
+    """Return whether a phrase says what somebody wears: "one with the blue helmet", "one in the red coat"."""
+    match = _WEARING.search(phrase)
+    if match is None:
+        return False
+    words = tuple(match[1].lower().split(" "))
+    concepts = (lexicon().concept(" ".join(words[start:end])) for start, end in nouns_in(words))
+    return any(concept is not None and lexicon().kinds(concept) & _CLOTHES for concept in concepts)

@@ -1,0 +1,84 @@
+"""The head noun of a description, and what kind of thing it names."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+from scope_ptz.english import is_plural
+from scope_ptz.english.grammar.common_nouns import is_common_noun
+from scope_ptz.english.grammar.lexicon import lexicon, nouns_in
+from scope_ptz.english.grammar.questions.question_parser import parse_description
+from scope_ptz.planner.grammar.execution.answer_sentences import head_and_rest
+
+_ANYONE = frozenset({"anyone", "anybody", "someone", "somebody", "everyone", "everybody", "who"})
+
+
+@lru_cache(maxsize=1024)
+def head_noun(description: str) -> str:
+    """Return the head noun of a description with its number: "workers" for "workers in orange vests"; empty for none."""
+    words = _head(description).split(" ")
+    return words[-1] if words else ""
+
+
+@lru_cache(maxsize=1024)
+def noun_end(description: str) -> int:
+    """Return the index at which the last known noun before any preposition ends: 11 for "post office open"; 0 for none."""
+    words = _head(description).lower().split(" ")
+    ends = [end for end in range(1, len(words) + 1) if any(span[1] == end for span in nouns_in(tuple(words[:end])))]
+    end = ends[-1] if ends else 0
+    while end < len(words) and is_common_noun(words[end]):
+        end += 1  # "post office"
+    return len(" ".join(words[:end]))
+
+
+def without_predicate(words: str) -> str:
+    """Return words up to their last noun: "bus" for "bus moving", "man with an umbrella" for "man with an umbrella walking"."""
+    kept = words.split(" ")
+    while kept and lexicon().concept(kept[-1].lower()) is None and not is_common_noun(kept[-1].lower()) and not kept[-1].isdigit():
+        kept.pop()
+    return " ".join(kept)
+
+
+@lru_cache(maxsize=1024)
+def bare_noun(description: str) -> str:
+    """Return the longest known noun that ends the head: "headline boards" for "two yellow headline boards"."""
+    words = (description[: noun_end(description)] or _head(description)).split(" ")
+    spans = [start for start, end in nouns_in(tuple(word.lower() for word in words)) if end == len(words)]
+    return " ".join(words[min(spans, default=len(words) - 1) :])
+
+
+def is_ranked(description: str) -> bool:
+    """Return whether a description picks one thing by a superlative or an ordinal: "nearest car"."""
+    return any(phrase.order is not None or phrase.ordinal is not None for phrase in parse_description(description).phrases)
+
+
+def names_person(description: str) -> bool:
+    """Return whether a description names a person or people."""
+    return _is_kind(description, "person") or description.split(" ")[0].lower() in _ANYONE
+
+
+def names_animal(description: str) -> bool:
+    """Return whether a description names an animal, which people call "it", "he" or "she"."""
+    return _is_kind(description, "animal")
+
+
+def may_name_person(description: str) -> bool:
+    """Return whether "he" or "she" may refer to a thing: to a person, an animal, or something that the lexicon does not know."""
+    if names_person(description) or names_animal(description):
+        return True
+    return lexicon().concept(head_noun(description).lower()) is None and not is_common_noun(head_noun(description).lower())
+
+
+def names_several(description: str) -> bool:
+    """Return whether the head noun is a plural."""
+    return is_plural(head_noun(description).lower())
+
+
+def _head(description: str) -> str:
+    return head_and_rest(description)[0]
+
+
+def _is_kind(description: str, kind: str) -> bool:
+    words = tuple(_head(description).lower().split(" "))
+    concepts = (lexicon().concept(" ".join(words[start:end])) for start, end in nouns_in(words))
+    return any(concept is not None and kind in lexicon().kinds(concept) for concept in concepts)

@@ -1,0 +1,273 @@
+"""What pronouns, "one" and short follow-ups refer to in a conversation."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from scope_ptz.planner.base import PastTurn
+from scope_ptz.planner.grammar.binding.asked_things import asked_thing, with_other_thing
+from scope_ptz.planner.grammar.binding.narrowing import narrowed
+from tests.planner.stage import Stage
+
+
+class _Scripted(Stage):
+    """A camera that finds everything, counts ``count`` things, or one after another of several numbers, and answers ``answer``."""
+
+    def __init__(self, count: int | tuple[int, ...], answer: str, fail: dict[str, int] | None = None) -> None:
+        super().__init__((), fail=fail)
+        self.counts, self.answer = list(count) if isinstance(count, tuple) else [count], answer
+
+    def do(self, name: str, arguments: dict[str, Any]) -> tuple[dict[str, Any] | None, str | None]:
+        count = self.counts.pop(0) if name == COUNT and len(self.counts) > 1 else self.counts[0]
+        looks: dict[str, Any] = {COUNT: count, ASK: {"answer": self.answer, "known": True}}
+        self.looks = [looks.get(name, True)]
+        return super().do(name, arguments)
+
+
+def last_turn(*instructions: str, count: int | tuple[int, ...] = 1, answer: str = "Yes.") -> tuple[list[tuple[str, str]], str]:
+    """Return the looks of the last turn, each with its description, question or preset, and the reply."""
+    stage = _Scripted(count, answer)
+    turns: tuple[PastTurn, ...] = ()
+    for instruction in instructions:
+        stage.calls.clear()
+        turns = (*turns, stage.turn(instruction, turns))
+    return [(name, str(a.get("description") or a.get("question") or a.get("name"))) for name, a in stage.calls], turns[-1].reply
+
+
+ZOOM, COUNT, ASK, TRACK = "zoom_to_object", "count_objects", "query_answer", "track_object"
+
+
+@pytest.mark.parametrize(
+    ("question", "description"),
+    [
+        ("where is the forklift?", "forklift"),
+        ("where's the man with the blue helmet?", "man with the blue helmet"),
+        ("what is the nearest car?", "nearest car"),
+        ("which sign is furthest?", "furthest sign"),
+        ("which of the cars is the biggest?", "biggest car"),
+        ("which of the people is nearest to the camera?", "nearest person"),
+        ("which car is furthest to the left?", "car furthest to the left"),
+        ("who is standing at the kiosk?", "person standing at the kiosk"),
+        ("is there anybody in the shelter?", "person in the shelter"),
+        ("which worker has an umbrella?", "worker with an umbrella"),
+        ("what does the sign above the door say?", "sign above the door"),
+        ("is the post office open?", "post office"),
+        ("is the bus moving?", "bus"),
+        ("is the pedestrian with a green umbrella walking?", "pedestrian with a green umbrella"),
+        ("who has an umbrella?", "person with an umbrella"),
+        ("what colour is the worker's helmet?", "worker"),
+        ("who's there?", None),
+        ("what text can you see?", None),
+        ("is it raining?", None),
+    ],
+)
+def test_a_question_is_about_a_thing(question: str, description: str | None) -> None:
+    thing = asked_thing(question)
+    assert (thing.description if thing else None) == description
+
+
+@pytest.mark.parametrize(
+    ("question", "other", "expected"),
+    [
+        ("what colour is the car?", "green lorry", "what colour is the green lorry?"),
+        ("how much is the lettuce?", "apples", "how much are the apples?"),
+        ("what does the middle sign say?", "left sign", "what does the left sign say?"),
+    ],
+)
+def test_a_question_is_asked_about_another_thing(question: str, other: str, expected: str) -> None:
+    assert with_other_thing(question, other) == expected
+
+
+@pytest.mark.parametrize(
+    ("description", "predicate", "expected"),
+    [
+        ("workers", "wear helmets", "workers wearing helmets"),
+        ("cars", "are black", "black cars"),
+        ("black cars", "blue", "blue cars"),
+        ("people in the left half", "in the right half", "people in the right half"),
+        ("people sitting down", "standing", "people standing"),
+        ("workers", "have an umbrella", "workers with an umbrella"),
+    ],
+)
+def test_a_description_is_narrowed(description: str, predicate: str, expected: str) -> None:
+    assert narrowed(description, predicate) == expected
+
+
+@pytest.mark.parametrize(
+    "question", ["where is the truck?", "is the truck moving?", "what colour is the truck?", "describe the truck"]
+)
+def test_it_is_the_thing_of_the_last_question(question: str) -> None:
+    calls, _ = last_turn("how many cones are there?", question, "zoom in on it", count=2)
+    assert calls == [(ZOOM, "truck")]
+
+
+def test_a_look_that_failed_is_not_what_it_refers_to() -> None:
+    first = _Scripted(1, "Yes.").turn("how many cones are there?")
+    second = _Scripted(1, "Yes.", fail={ASK: 2}).turn("is there a truck?", (first,))
+    stage = _Scripted(1, "Yes.")
+    stage.turn("zoom in on it", (first, second))
+    assert stage.calls == [(ZOOM, {"description": "cone"})]
+
+
+@pytest.mark.parametrize(
+    ("instructions", "expected"),
+    [
+        (("where is the man in the red coat?", "where is the van?", "follow him"), (TRACK, "man in the red coat")),
+        (("is there anybody in the shelter?", "zoom in on her"), (ZOOM, "person in the shelter")),
+        (("zoom in on the worker", "what is he holding?"), (ASK, "what is the worker holding?")),
+        (("zoom in on the worker", "what colour is his jacket?"), (ASK, "what colour is the worker's jacket?")),
+        (("where is the van?", "where is the man in the red coat?", "zoom in on it"), (ZOOM, "van")),
+        (("where is the bus?", "is it moving?"), (ASK, "is the bus moving?")),
+        (("where is the digger?", "what is it doing?"), (ASK, "what is the digger doing?")),
+        (("is the post office open?", "read its sign please"), (ASK, "What does the sign of the post office say?")),
+        (("zoom in on the bus", "zoom in on the man next to it"), (ZOOM, "man next to the bus")),
+    ],
+)
+def test_a_pronoun_refers_to_something_of_its_kind(instructions: tuple[str, ...], expected: tuple[str, str]) -> None:
+    calls, _ = last_turn(*instructions)
+    assert calls == [expected]
+
+
+def test_nobody_is_named() -> None:
+    calls, reply = last_turn("where is the van?", "follow him")
+    assert (calls, reply) == ([], "Who do you mean by 'him'? Please name the person.")
+    assert last_turn("zoom in on her") == ([], "Who do you mean by 'her'? Please name the person.")
+
+
+def test_one_of_several_things_is_asked_about() -> None:
+    answer = "There are 2 forklifts: one on the left and one on the right."
+    calls, reply = last_turn("where's the forklift?", "follow it", answer=answer)
+    assert (calls, reply) == ([], "Which of the 2 forklifts do you mean?")
+    answer = "Yes, there are 3 things with an umbrella: a man, a woman and a child."
+    assert last_turn("who has an umbrella?", "zoom in on her", answer=answer)[0] == []
+    answer = "A child, a man and 2 women are without helmets."
+    calls, reply = last_turn("who is not wearing a helmet?", "zoom in on him", answer=answer)
+    assert (calls, reply) == ([], "Which of the 4 people not wearing a helmet do you mean?")
+
+
+def test_the_answer_to_which_one_completes_the_instruction() -> None:
+    answer = "There are 2 forklifts: one on the left and one on the right."
+    calls, _ = last_turn("where's the forklift?", "follow it", "the one on the left", answer=answer)
+    assert calls == [(TRACK, "forklift on the left")]
+
+
+@pytest.mark.parametrize(
+    "question",
+    [
+        "is it raining?",
+        "how far is it to Brampton?",
+        "will it rain this afternoon?",
+        "what time is it on the clock?",
+        "does the bus have its lights on?",
+    ],
+)
+def test_it_may_refer_to_nothing_or_to_the_question_itself(question: str) -> None:
+    assert last_turn("zoom in on the van", question)[0] == [(ASK, question)]
+
+
+def test_it_may_anticipate_the_thing() -> None:
+    calls, _ = last_turn("zoom in on the van", "what does it say on the blue cabin?")
+    assert calls == [(ASK, "what does the blue cabin say?")]
+
+
+@pytest.mark.parametrize(
+    ("follow_up", "expected"),
+    [
+        ("how many of them wear helmets?", (COUNT, "workers wearing helmets")),
+        ("how many of them are walking?", (COUNT, "workers walking")),
+        ("how many of them are in the left half?", (COUNT, "workers in the left half")),
+        ("how many have an umbrella?", (COUNT, "workers with an umbrella")),
+        ("are any of them wearing helmets?", (ASK, "are any of the workers wearing helmets?")),
+        ("which of them has an umbrella?", (ASK, "which of the workers has an umbrella?")),
+        ("any in hi-vis?", (ASK, "any of the workers in hi-vis?")),
+        ("and in the right half?", (COUNT, "workers in the right half")),
+        ("what about in the bottom right quarter?", (COUNT, "workers in the bottom right quarter")),
+        ("and standing?", (COUNT, "workers standing")),
+        ("where?", (ASK, "where are the workers?")),
+        ("and the cones?", (COUNT, "cones")),
+    ],
+)
+def test_a_count_is_followed_up(follow_up: str, expected: tuple[str, str]) -> None:
+    assert last_turn("how many workers are there?", follow_up, count=8)[0] == [expected]
+
+
+def test_shares_are_shares_of_the_same_whole() -> None:
+    turns = ("how many workers are there?", "how many of them wear helmets?", "how many of them are walking?")
+    assert last_turn(*turns, count=(8, 6, 1))[0] == [(COUNT, "workers walking")]
+    assert last_turn(*turns[:2], "zoom in on them", count=(8, 6))[0] == [(ZOOM, "workers wearing helmets")]
+    assert last_turn("how many cars are there?", "how many of them are black?", "and blue?", count=(8, 6, 1))[0] == [
+        (COUNT, "blue cars")
+    ]
+
+
+@pytest.mark.parametrize(
+    ("before", "follow_up", "expected"),
+    [
+        ("what colour is the bus?", "and the coach?", (ASK, "what colour is the coach?")),
+        ("what does the middle sign say?", "what about the left one?", (ASK, "what does the left sign say?")),
+        ("what does the middle sign say?", "and the one on the right?", (ASK, "what does the sign on the right say?")),
+        ("which car is nearest?", "and the farthest?", (ASK, "What is the farthest car?")),
+        ("how many taxis are there?", "what colour is the nearest one?", (ASK, "what colour is the nearest taxi?")),
+        ("how many forklifts are there?", "what colour is each one?", (ASK, "what colour is each forklift?")),
+        ("how many signs are there?", "which one is the biggest?", (ASK, "which sign is the biggest?")),
+    ],
+)
+def test_a_question_is_followed_up(before: str, follow_up: str, expected: tuple[str, str]) -> None:
+    assert last_turn(before, follow_up, count=3)[0] == [expected]
+
+
+@pytest.mark.parametrize(
+    ("before", "follow_up", "expected"),
+    [
+        ("zoom in on the red sign", "now the yellow one", (ZOOM, "yellow sign")),
+        ("zoom in on the black car", "what about the silver one?", (ZOOM, "silver car")),
+        ("follow the black car", "now the silver one", (TRACK, "silver car")),
+        ("zoom in on the worker", "and the one with the blue helmet", (ZOOM, "worker with the blue helmet")),
+    ],
+)
+def test_a_command_is_followed_up(before: str, follow_up: str, expected: tuple[str, str]) -> None:
+    assert last_turn(before, follow_up)[0] == [expected]
+
+
+def test_another_one_is_asked_about() -> None:
+    assert last_turn("how many signs are there?", "zoom in on one of them", count=3) == (
+        [],
+        "Which one do you mean? Please describe it.",
+    )
+    assert last_turn("zoom in on the red sign", "and the other one") == (
+        [], "Which other one do you mean? Please describe it.",
+    )  # fmt: skip
+
+
+def test_one_with_clothes_is_a_person() -> None:
+    calls, _ = last_turn("how many workers are there?", "how many cones are there?", "zoom in on the one with the blue helmet")
+    assert calls == [(ZOOM, "worker with the blue helmet")]
+
+
+def test_boards_that_were_counted_are_read() -> None:
+    calls, _ = last_turn("how many headline boards are there?", "read them all", count=3)
+    assert calls == [(ASK, "What do the headline boards say?")]
+
+
+def test_a_list_after_altogether_names_no_other_things() -> None:
+    assert last_turn("how many cars are there altogether, taxis and others?", "how many of them are black?", count=4)[0] == [
+        (COUNT, "black cars")
+    ]
+
+
+def test_a_tour_is_compared_from_its_counts() -> None:
+    tour = ("go to each preset and count the cones", "which one had the most?")
+    calls, reply = last_turn(*tour, count=(4, 1))
+    assert not calls
+    assert reply.startswith("Preset gate had more cones, with 4.")
+    assert last_turn(*tour, "go there", count=(4, 1))[0] == [("go_to_preset", "gate")]
+
+
+def test_more_compares_the_two_presets_that_were_counted() -> None:
+    earlier = ("how many cones are there at the gate?", "and at the highway?", "which preset has more cones?")
+    assert [look for look in last_turn(*earlier)[0] if look[0] == "go_to_preset"] == [
+        ("go_to_preset", "gate"),
+        ("go_to_preset", "highway"),
+    ]
