@@ -15,6 +15,7 @@ from scope_ptz.planner.grammar.execution.outline import OutlineBlock
 from scope_ptz.planner.grammar.execution.outline import outline as make_outline
 from scope_ptz.planner.grammar.execution.program import Program
 from scope_ptz.planner.grammar.execution.run_state import AssumedOutcome
+from scope_ptz.planner.grammar.instruction_tree import Reply
 
 _MAX_CALLS = 200  # longer plans are truncated
 _OBJECT_ZOOM_FACTOR = 2.0  # assumed effect of zoom_to_object
@@ -33,9 +34,9 @@ class Plan:
     """The plan for an instruction.
 
     Attributes:
-        understood: Whether the instruction was understood and is not refused.
+        understood: Whether the instruction asks for something that was understood, and is not refused. A greeting asks for nothing.
         calls: The calls that the planner makes if every call succeeds and every condition is met at its first test.
-        clarification: The question or refusal if ``understood`` is false; otherwise None.
+        clarification: The question, refusal or reply to a courtesy if ``understood`` is false; otherwise None.
         outline: The calls grouped into loops and conditional branches.
     """
 
@@ -73,6 +74,8 @@ def plan(
     meaning = understand(instruction, tuple(presets) or None)
     if meaning.refusal or meaning.clarification:
         return Plan(instruction, False, (), meaning.clarification or meaning.refusal)
+    if replies := [step.text for step in meaning.steps if isinstance(step, Reply)]:
+        return Plan(instruction, False, (), replies[0])
     program = Program(limits, pose, assume_met=True)
     world = _AssumedWorld(pose, limits, preset_poses or {})
     calls: list[PlannedCall] = []

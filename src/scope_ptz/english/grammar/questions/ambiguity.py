@@ -67,7 +67,7 @@ def _cost_of_node(node: Any, cache: dict[int, float]) -> float:
         case tree.Phrase(words=words):
             spans = nouns_in(words)
             total += 1.0 if spans else 2.0
-            total += 4.0 if words[-1] in _TEXT_AND_PROPERTY_NOUNS else 0.0
+            total += 4.0 if words and words[-1] in _TEXT_AND_PROPERTY_NOUNS else 0.0
             total += 0.3 if spans and spans[0][1] < len(words) else 0.0
             total += 0.2 * max(0, len(node.tests) - 1)
         case tree.Is(words=words):

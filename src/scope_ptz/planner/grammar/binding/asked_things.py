@@ -29,6 +29,9 @@ _WHICH = re.compile(
     r"(?P<rest>.+)",
     re.IGNORECASE,
 )
+_LEFT = re.compile(r" (?:gone|going|got to|off to|now)$", re.IGNORECASE)
+"""Words at the end of "where has the van gone" that do not describe the thing."""
+
 _PLAIN_ARTICLES = frozenset({"the", "any", "some"})
 _VERB_BEFORE = re.compile(r"\b(?:is|are|does|do|has|have) $", re.IGNORECASE)
 _VERBS = {"has": "with", "have": "with", "wear": "wearing", "carry": "carrying", "hold": "holding"}
@@ -129,7 +132,7 @@ def _asked(text: str, asked: tree.Question | None, start: int, end: int) -> Aske
     first = noun_phrase.split(" ")[0].lower()
     if first in _PRONOUNS:
         return None
-    description = noun_phrase
+    description = _LEFT.sub("", noun_phrase) if isinstance(asked, tree.Where) else noun_phrase
     if isinstance(asked, tree.YesNo):
         with_rest = without_predicate(text[start:])
         is_marked = text[end:].startswith(" with ") and len(with_rest) < len(text) - start  # "is the man with an umbrella walking?"

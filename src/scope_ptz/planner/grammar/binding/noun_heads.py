@@ -66,7 +66,7 @@ def may_name_person(description: str) -> bool:
     """Return whether "he" or "she" may refer to a thing: to a person, an animal, or something that the lexicon does not know."""
     if names_person(description) or names_animal(description):
         return True
-    return lexicon().concept(head_noun(description).lower()) is None and not is_common_noun(head_noun(description).lower())
+    return lexicon().concept(head_noun(description).lower()) is None
 
 
 def names_several(description: str) -> bool:

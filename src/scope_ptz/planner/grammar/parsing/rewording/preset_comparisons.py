@@ -58,7 +58,8 @@ def with_presets_compared(text: str, names: str) -> str:
         asked = asked[: ending.start()] if is_remark(ending["last"], ()) else asked  # "..., one of the drivers is asking"
     found = list(re.finditer(rf"\b(?:{names})\b", asked, re.IGNORECASE))
     compared = _COMPARED.search(re.sub(rf"\b(?:{names})\b", lambda match: "," * len(match[0]), asked, flags=re.IGNORECASE))
-    compares_all = len(found) > 2 and compared is not None and compared["how"].lower() in _SUPERLATIVES
+    asks = re.search(r"\b(?:which|what|where|who)\b", asked, re.IGNORECASE) is not None
+    compares_all = asks and len(found) > 2 and compared is not None and compared["how"].lower() in _SUPERLATIVES
     if compared is None or len({match[0].lower() for match in found}) != len(found) or not (len(found) == 2 or compares_all):
         return text
     between = asked[found[0].end() : found[-1].start()]

@@ -47,6 +47,7 @@ WORDS = {
 """Misspelt, shortened and dialect words with their standard forms."""
 
 SPELLING = (
+    (r"\btheres\b", "there's"),
     (r"\bcarry out (?=an? |the )", "do "),
     (r"(?<!['’\w])th?['’](?=[a-z])", "the "),
     (r"\bo['’](?= \w)", "of"),
