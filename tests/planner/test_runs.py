@@ -192,8 +192,8 @@ def test_unclear_instructions_lead_to_a_question() -> None:
 @pytest.mark.parametrize(
     ("instruction", "report"),
     [
-        ("zoom in 2x", "I zoomed in by a factor of 2; the camera is now at pan 0.0, tilt 0.0, zoom 2.0x."),
-        ("zoom in 4x, then zoom out by a factor of 2", "I zoomed out by a factor of 2; the camera is now at pan 0.0, tilt 0.0,"),
+        ("zoom in 2x", "I zoomed in 2x; the camera is now at pan 0.0, tilt 0.0, zoom 2.0x."),
+        ("zoom in 4x, then zoom out by a factor of 2", "I zoomed out 2x; the camera is now at pan 0.0, tilt 0.0,"),
         ("zoom out 2x", "I did not move: the camera is already zoomed out as far as it can; the camera is now at pan 0.0,"),
         (
             "pan right 30 and go back",
@@ -210,7 +210,7 @@ def test_how_a_move_is_reported(instruction: str, report: str) -> None:
     [
         ({"pan_deg": 10.86, "tilt_deg": -0.004, "zoom_factor": 1.001}, "panned right 10.86 degrees"),
         ({"pan_deg": 0.001}, "did not move"),
-        ({"zoom_factor": 0.24}, "zoomed out by a factor of 4.17"),
+        ({"zoom_factor": 0.24}, "zoomed out 4.17x"),
     ],
 )
 def test_a_part_of_a_move_that_rounds_to_nothing_is_not_mentioned(arguments: dict[str, float], text: str) -> None:

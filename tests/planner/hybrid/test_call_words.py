@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from scope_ptz.planner.base import ToolCall
@@ -40,6 +40,7 @@ CALLS = st.one_of(
 
 
 @given(CALLS)
+@example(("wipe_lens", {"view": "front"}))
 def test_a_described_call_can_be_parsed_back(call: tuple[str, dict[str, Any]]) -> None:
     words = call_in_words(ToolCall(id="c", name=call[0], arguments=call[1]))
     assert call_from_words(words) == call

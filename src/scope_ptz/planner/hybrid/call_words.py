@@ -29,7 +29,6 @@ _ZOOM = (
 def call_in_words(call: ToolCall) -> str:
     """Describe a valid call in words that can follow "Shall I": 'pan right 20 degrees', 'count "cars" in this view'."""
     arguments = call.arguments
-    view = _VIEWS_IN_WORDS[arguments.get("view", "current")]
     match call.name:
         case "adjust_ptz":
             return " and ".join(_move_words(arguments)) or "leave the camera where it is"
@@ -42,9 +41,9 @@ def call_in_words(call: ToolCall) -> str:
         case "take_image":
             return "take a picture"
         case "count_objects":
-            return f"count {_quote(arguments['description'])} in {view}"
+            return f"count {_quote(arguments['description'])} in {_view_in_words(arguments)}"
         case "query_answer":
-            return f"find out {_quote(arguments['question'])} from {view}"
+            return f"find out {_quote(arguments['question'])} from {_view_in_words(arguments)}"
         case "zoom_to_object":
             return f"zoom in on {_quote(arguments['description'])}"
         case "track_object":
@@ -58,6 +57,10 @@ def call_from_words(words: str) -> tuple[str, dict[str, Any]] | None:
         if match := pattern.fullmatch(words):
             return call(match)
     return None
+
+
+def _view_in_words(arguments: dict[str, Any]) -> str:
+    return _VIEWS_IN_WORDS[arguments.get("view", "current")]
 
 
 def _move_words(arguments: dict[str, Any]) -> list[str]:

@@ -18,7 +18,7 @@ def move_text(arguments: Mapping[str, Any]) -> str:
         parts.append(f"tilted {'up' if tilt > 0 else 'down'} {degrees(tilt)}")
     if factor := arguments.get("zoom_factor"):
         times = _rounded(factor if factor >= 1 else 1 / factor)
-        parts += [f"zoomed {'in' if factor >= 1 else 'out'} by a factor of {number(times)}"] if times != 1 else []
+        parts += [f"zoomed {'in' if factor >= 1 else 'out'} {number(times)}x"] if times != 1 else []
     if percent := arguments.get("zoom_percent"):
         parts.append(f"zoomed {'in' if percent > 0 else 'out'} by {number(abs(percent))}%")
     if limit := arguments.get("zoom_limit"):
