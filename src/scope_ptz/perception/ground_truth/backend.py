@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from scope_ptz.perception.ground_truth.answers.legible_text import TextRegion
     from scope_ptz.perception.ground_truth.view import Thing, View
 
-GROUND_TRUTH_VERSION = 3
+GROUND_TRUTH_VERSION = 4
 """The version of ground-truth perception, which traces record. It increases when replies to the same request and view change."""
 
 TruthReader = Callable[[Scene, str, Projection, float], ViewTruth]

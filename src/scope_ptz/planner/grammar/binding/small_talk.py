@@ -88,7 +88,7 @@ def _has_thanks(sentence: Sequence[Lexeme]) -> bool:
 
 
 _SWITCHING = "(switch|turn|put|flick|flip) (DET|FREE)* (on|off) (DET|FREE)*"
-_SPEAKING = "(tell|ask|order|remind|warn|instruct|call|phone|ring|radio|alert|notify|page) (DET)? (FREE)+ (_)*"
+_SPEAKING = "(tell|inform|ask|order|remind|warn|instruct|call|phone|ring|radio|alert|notify|page) (DET)? (FREE)+ (_)*"
 _HANDLING = (
     "(open|close|shut|lock|unlock|push|pull|lift|clean|wash|paint|repair|mend|fix|park|drive|water|feed|sell|buy|deliver|unload"
     "|remove|sweep|tidy|print|email|play|build|stop|start|move) (DET)+ (FREE)+ (_)*"

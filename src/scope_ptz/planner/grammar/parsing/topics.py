@@ -56,6 +56,9 @@ def topic_step(source: Source, clause: Clause, after: Clause | None) -> tuple[St
         subject = f"{article}{with_lower_initial(text_of(source, clause.lexemes))}"
         verb = "are" if noun(subject, 2) == subject else "is"
         return Ask(f"{text_of(source, asked['asked'])} {verb} {subject}?"), True
+    if after.is_question and full_match("(FILLER)* what BE (it|that|this) (FILLER)*", after.lexemes):
+        article = "" if clause.lexemes[0].has("DET") else "the "
+        return Ask(f"What is {article}{with_lower_initial(text_of(source, clause.lexemes))}?"), True
     is_asked = match_start(
         "(FILLER|COMMA|AND|TELL|if|whether|me)* (BE|DOV|HAVEV|MODAL|can|WHQ _{1,4}) (it|they|them|PRON)", after.lexemes
     )

@@ -46,6 +46,10 @@ _IDENTITIES = (
 """Text that identifies a thing: "I need the number plate of the blue lorry"."""
 
 
+_SPEAKING = frozenset({"tell", "inform", "ask", "notify", "advise"})
+"""Verbs of which the object is the person spoken to."""
+
+
 def _verbless_question(source: Source, lexemes: Sequence[Lexeme], *, has_question_mark: bool) -> str | None:
     """Return the question that "barrier open?", "driver wearing a helmet?" and "excavator colour?" stand for; None for others."""
     if (question := _identity_question(source, lexemes)) is not None:
@@ -157,6 +161,8 @@ def question_step(
         rest = told["rest"]
         if lexemes[0].word == "ask" and rest[0].has("DET"):
             raise NotUnderstoodError(lexemes)  # "ask the sound guy whether he has had dinner"
+        if lexemes[0].word in _SPEAKING and match_start("DET FREE{1,3} (that|to|not|about|whether|if) _", rest):
+            raise NotUnderstoodError(lexemes)  # "tell the driver that he is late"
         nobody = full_match("(that)? NOONE BE (?P<where>_*)", rest)
         if nobody is not None and not search(_NO_TOPIC, rest):
             return Ask(f"Is anyone {text_of(source, nobody['where']) or 'there'}?", scope)  # "make sure nobody is on the track"

@@ -107,6 +107,13 @@ _EVENT = re.compile(
     r"(?: (?:in|back|here|up|out|off|away|past|by|at \w+))*\s*[.!]*$",
     re.IGNORECASE,
 )
+_ASKS_WHICH = re.compile(
+    r"which (?:one |place |preset )?(?:has|have|had|shows?|contains?|holds?)(?: got)? (?:the )?"
+    r"(?:most|more|few|least|less|highest|lowest)",
+    re.IGNORECASE,
+)
+"""The beginning of a question after a list: "gate, yard, roof - which has most bikes", unlike "the gate, which is open"."""
+
 _IDIOMS = re.compile(
     r"(?:,|[.?]| -+) (?:(?:i )?(?:don't|do not) like the look of (?:him|her|them|it|that)|(?:i|we)(?:'ve| have)? lost "
     r"(?:track|count)"
@@ -173,6 +180,8 @@ def _without_last(text: str, presets: tuple[str, ...]) -> str:
         return purpose["done"]
     for boundary in (*_BOUNDARY.finditer(text), *_REASON.finditer(text)):
         said = text[: boundary.start()]
+        if _ASKS_WHICH.match(text[boundary.end() :]):
+            continue
         tail = re.sub(r"^which\b", "it", text[boundary.end() :].strip().rstrip(".!"), flags=re.IGNORECASE)
         if _AS_FAR.search(said) is not None:
             continue

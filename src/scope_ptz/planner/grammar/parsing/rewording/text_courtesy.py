@@ -25,7 +25,7 @@ COURTESIES = (
     (r", (?:would|will|could|can) you(?=[,.!?]|$)", ""),
     (rf"(?:(?<=[.?!])|,)\s*{_CLOSINGS},? {_NAMES}\s*[.!]?$", ""),
     (r"\s*[\U0001F300-\U0001FAFF\u2600-\u27BF]+", ""),
-    (r",? by (?:here|there)(?=\W*$)", ""),
+    (r",? by (?:here|there)(?=\W*$|, \w+\W*$)", ""),
     (r", (?:boy|my lover|butt|bach|bab|cock|hen|babes|mun|guv|my lovely|like)(?=\s*[,.!?]|$)", ""),
     (r" mun(?=,|\.|$)", ""),
     (r", over(?: and out)?\s*[.!]*$", ""),
