@@ -63,6 +63,12 @@ def test_one_is_the_head_noun_of_the_last_description() -> None:
     assert calls == [("zoom_to_object", {"description": "worker on the left"})]
 
 
+@pytest.mark.parametrize("named", ["platform one", "dock one", "number one bus"])
+def test_one_is_a_number_after_a_noun_for_a_numbered_place(named: str) -> None:
+    calls, _ = last_calls("how many cars are there?", f"zoom in on {named}", looks=(2, True))
+    assert calls == [("zoom_to_object", {"description": named})]
+
+
 def test_a_question_is_repeated_at_another_preset() -> None:
     calls, _ = last_calls("how many cones are there?", "and at the gate?")
     assert calls == [("go_to_preset", {"name": "gate"}), ("count_objects", {"description": "cones", "view": "current"})]

@@ -191,6 +191,18 @@ def test_what_is_no_single_move_is_not_corrected(before: str) -> None:
     assert not stage.calls
 
 
+@pytest.mark.parametrize("hesitation", ["wait a bit", "hold on a bit", "wait 10", "hang on 5"])
+def test_a_hesitation_corrects_nothing(hesitation: str) -> None:
+    stage = Stage()
+    talk(stage, "pan left 20", hesitation)
+    assert not stage.calls
+
+
+def test_a_correction_beyond_a_limit_names_the_limit() -> None:
+    stage = Stage()
+    assert "as far as the tilt limit allows" in talk(stage, "tilt up 80", "no, I meant 120")[-1].reply
+
+
 @pytest.mark.parametrize(
     ("command", "tool"), [("zoom in on the van", "zoom_to_object"), ("follow the van for 20 seconds", "track_object")]
 )

@@ -11,6 +11,7 @@ from scope_ptz.planner.confirmations import yes_or_no
 from scope_ptz.planner.grammar.binding.continuations import commands_of
 from scope_ptz.planner.grammar.binding.small_talk import impossible_request
 from scope_ptz.planner.grammar.binding.understand import Understanding, understand
+from scope_ptz.planner.grammar.consistency.check import NOT_UNDERSTOOD
 from scope_ptz.planner.grammar.execution.camera_history import position_history
 from scope_ptz.planner.grammar.execution.closer_look import offer_in, offer_text
 from scope_ptz.planner.grammar.execution.program import Program
@@ -61,7 +62,9 @@ def decide_on(meaning: Understanding, state: State) -> Decision:
         return Finish(kind="refused", text=meaning.refusal)
     if meaning.clarification:
         # A plan quotes the words that were not understood; the reply says why they cannot be carried out, if that is known.
-        return Finish(kind="clarification", text=impossible_request(state.instruction) or meaning.clarification)
+        is_unread = meaning.clarification.startswith(NOT_UNDERSTOOD)
+        reason = impossible_request(state.instruction) if is_unread else ""
+        return Finish(kind="clarification", text=reason or meaning.clarification)
     briefing = state.briefing
     viewpoint = briefing.viewpoints.current if briefing.viewpoints is not None else None
     effects = [command.effect for command in commands_of(state.conversation, briefing.presets)]

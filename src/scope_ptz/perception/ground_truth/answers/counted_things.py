@@ -57,7 +57,7 @@ def answer_exists(view: View, question: tree.Exists) -> TruthAnswer:
     if not matches and unmodelled_place(view, what):
         return unknown_answer(whether)
     if not matches and (vehicle := asked_vehicle(view, question.what)) is not None:
-        return answer_about_occupants(view, vehicle)
+        return answer_about_occupants(view, question.what, vehicle)
     if not matches and undecided_people(view, what):
         return unknown_answer(whether)
     if question.least != 1 or question.most is not None:
@@ -112,7 +112,7 @@ def answer_count(view: View, question: tree.Count) -> TruthAnswer:
     if unmodelled_background(view, question.what) or (not total and unmodelled_place(view, description)):
         return unknown_answer(how_many)
     if not total and (vehicle := asked_vehicle(view, description)) is not None:
-        return answer_about_occupants(view, vehicle)
+        return answer_about_occupants(view, description, vehicle, is_yes_no=False)
     is_open = any(holds(view, t, test) is None for t in find(view, question.what) for test in tests if isinstance(test, tree.Has))
     if not total and (open_number or is_open or _asks_for_parts(view, question)):
         return unknown_answer(_how_many_parts(view, question) or how_many)

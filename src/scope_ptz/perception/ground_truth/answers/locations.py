@@ -153,7 +153,7 @@ def _answer_no_match(view: View, question: tree.What, description: tree.Descript
             return answer_absent(view, places[0])
         return known_answer(f"I can see nothing {english.listing([words_after_noun(view, t) for t in question.tests])}")
     if (vehicle := asked_vehicle(view, description)) is not None:
-        return answer_about_occupants(view, vehicle)
+        return answer_about_occupants(view, description, vehicle, is_yes_no=False)
     if reason := undecided_reason(view, description):
         return unknown_answer(reason)
     return answer_absent(view, description)

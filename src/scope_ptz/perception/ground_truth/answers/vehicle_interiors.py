@@ -20,10 +20,15 @@ from scope_ptz.perception.ground_truth.view import Thing, View
 _DRIVING = frozenset({"driving", "operating", "steering", "riding"})
 
 
+_DRIVERS = frozenset({"driver", "drivers", "operator", "operators"})
+_ANYONE = frozenset({"person", "people", "anyone", "anybody", "someone", "somebody", "who", "occupant", "occupants"})
+_PASSENGERS = frozenset({"passenger", "passengers"})
+
+
 def asked_vehicle(view: View, description: tree.Description) -> tree.Description | None:
     """Return the vehicle whose occupants a description names ("a driver in the taxi", "anyone driving the taxi"), or None."""
     (phrase, *others) = description.phrases
-    if others or not phrase.words or not is_person(phrase.words[:1]):
+    if others or not phrase.words or not (is_person(phrase.words[:1]) or phrase.words[0] in _PASSENGERS):
         return None
     driven = driven_vehicle(phrase)
     inside = [
@@ -40,16 +45,28 @@ def driven_vehicle(phrase: tree.Phrase) -> tree.Description | None:
     return tree.Description((tree.Phrase(tuple(words[start:]), article="the"),)) if words[start:] else None
 
 
-def answer_about_occupants(view: View, vehicle: tree.Description) -> TruthAnswer:
-    """Answer who is in a vehicle: the people whom the scene models in it, or that this cannot be seen."""
+def answer_about_occupants(
+    view: View, description: tree.Description, vehicle: tree.Description, *, is_yes_no: bool = True
+) -> TruthAnswer:
+    """Answer who is in a vehicle: the people whom the scene models in it, or that this cannot be seen.
+
+    Args:
+        view: The view.
+        description: The people that the question asks about.
+        vehicle: The vehicle.
+        is_yes_no: Whether the answer begins with "yes" or "no".
+    """
+    asked = description.phrases[0].words[0]
     vehicles = _vehicles(view, vehicle)
     occupants = [t for t in view.things if t.parent in {v.id for v in vehicles} and "person" in t.concepts]
-    if occupants:
-        return known_answer(f"yes, there is {english.article(coloured_name(occupants[0]))} {position_words(occupants[0])}")
+    if occupants and asked in _DRIVERS | _ANYONE:
+        yes = "yes, " if is_yes_no else ""
+        return known_answer(f"{yes}there is {english.article(coloured_name(occupants[0]))} {position_words(occupants[0])}")
     stated = {str(v.attributes.get("driver", "")).lower() for v in vehicles}
     named = definite_as_asked(view, vehicle)
-    if stated and stated <= ABSENT_VALUES - {""}:
-        return known_answer(f"no, {named} has no driver")
+    if asked in _DRIVERS and stated and stated <= ABSENT_VALUES - {""}:
+        no = "no, " if is_yes_no else ""
+        return known_answer(f"{no}{named} {'have no drivers' if len(vehicles) > 1 else 'has no driver'}")
     return unknown_answer(f"I cannot see who is in {'it' if vehicle.phrases[0].words == ('it',) else named}")
 
 

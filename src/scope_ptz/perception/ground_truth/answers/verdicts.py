@@ -53,7 +53,7 @@ def answer_yes_no(view: View, question: tree.YesNo) -> TruthAnswer:
     """Answer whether the tests hold for the subject."""
     whole = add_tests(question.subject, question.tests)
     if (vehicle := asked_vehicle(view, whole)) is not None and not find(view, whole):
-        return answer_about_occupants(view, vehicle)
+        return answer_about_occupants(view, whole, vehicle)
     if undecided_people(view, whole) and not find(view, whole):
         return unknown_answer(f"I cannot tell whether anyone is {undecided_words(view, whole)}")
     subject, tests = _split_question(view, question)

@@ -30,6 +30,7 @@ _SIZE_IN_ANSWER = (
     r"(by|DET|AMOUNTISH|FILLER)* ((?P<number>NUM) (DEG|X|PERCENT)?|(?P<same>(SAMEAMOUNT|same (amount|angle)?|as_before) "
     r"(as before|as last_time|amount|as (much|far))?)|(?P<little>LITTLE)|(?P<lot>LOT)|(?P<limit>LIMIT)) (FILLER|AGAINWORD|STOP)*"
 )
+_HESITATION = "(FILLER|wait|hang_on|hold_on|hang on|hold on)+"
 _OTHER_NUMBER = "DET? (?P<which>ORDINAL) (one|PRESETNOUN)?"
 _SIZES = {"little": "a bit", "lot": "a lot", "limit": "all the way"}
 _UNITS = {"DEG": "degrees", "X": "times", "PERCENT": "percent"}
@@ -55,6 +56,8 @@ def corrected_text(lexemes: Sequence[Lexeme], text: str, last: Command, *, was_r
     rest = _without_edges(lexemes[size:])
     if not rest or any(x.has("NOT", "OR") for x in rest):
         return None
+    if full_match(_HESITATION, lexemes[:size]):
+        return None  # "wait a bit", unlike "wait, 10"
     if _is_bare_no(lexemes[:size]) or _may_approve(lexemes[:size], rest):
         return None  # "no left" may forbid a turn
     if len(last.steps) == 1 and isinstance(last.steps[0], ast.GoToPreset):

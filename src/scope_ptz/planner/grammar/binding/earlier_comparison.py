@@ -26,12 +26,14 @@ class EarlierCount:
         description: The objects that were counted.
         number: How many there were.
         turn: The index of the turn in the conversation.
+        complete: Whether there were no more; if false, ``number`` is a lower bound.
     """
 
     preset: str
     description: str
     number: int
     turn: int
+    complete: bool = True
 
 
 def last_preset(conversation: Sequence[PastTurn]) -> str:
@@ -55,14 +57,21 @@ def counts_at_presets(conversation: Sequence[PastTurn]) -> list[EarlierCount]:
             elif outcome.call.name in _LEAVE_PRESET:
                 at = ""
             elif outcome.call.name == "count_objects" and at and outcome.result is not None:
-                counts.append(EarlierCount(at, str(arguments.get("description", "")), int(outcome.result["count"]), index))
+                complete = bool(outcome.result.get("complete", True))
+                counts.append(
+                    EarlierCount(at, str(arguments.get("description", "")), int(outcome.result["count"]), index, complete)
+                )
     return counts
 
 
 def counts_of_tour(counts: Sequence[EarlierCount]) -> list[EarlierCount]:
-    """Return the counts of the last turn that counted, if it counted the same objects at several presets; otherwise none."""
+    """Return the counts of the last turn that counted, if it counted the same objects at several presets; otherwise none.
+
+    None if any of them is only a lower bound.
+    """
     tour = [count for count in counts if count.turn == counts[-1].turn and count.description == counts[-1].description]
-    return tour if len({count.preset for count in tour}) > 1 else []
+    is_known = len({count.preset for count in tour}) > 1 and all(count.complete for count in tour)
+    return tour if is_known else []
 
 
 def last_two_presets(counts: Sequence[EarlierCount]) -> tuple[str, str] | None:

@@ -11,7 +11,7 @@ from scope_ptz.planner.grammar import instruction_tree as ast
 from scope_ptz.planner.grammar.binding.earlier_comparison import EarlierCount, counts_at_presets, last_preset
 from scope_ptz.planner.grammar.binding.focus import OF_THEM, PERSONAL, PLURAL, Focus, foci_of, referent, which_one
 from scope_ptz.planner.grammar.binding.narrowing import is_worn, narrowed, with_noun
-from scope_ptz.planner.grammar.binding.noun_heads import may_name_person, names_person
+from scope_ptz.planner.grammar.binding.noun_heads import has_one, may_name_person, names_person, with_ones_replaced
 from scope_ptz.planner.grammar.binding.preset_matching import match_preset, plausible_name
 from scope_ptz.planner.grammar.execution.answer_sentences import noun
 
@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from scope_ptz.tools.arguments import View
 
 _NOT_OBJECTS = frozenset({"nothing", "around", "everywhere", "there", "here", "away", "about"})
-_ONES = re.compile(r"\bones?\b", re.IGNORECASE)
 _OBJECT_PRONOUN = re.compile(
     r"\b(?:of|to|behind|beside|near|above|below|under|on|in|by|around|with|opposite|from|than) (?P<pronoun>it|him|her|them)$",
     re.IGNORECASE,
@@ -91,9 +90,9 @@ class Names:
         """Return a reference to an object with its pronouns resolved, and remember it for later pronouns."""
         if thing.text.lower() in _NOT_OBJECTS:
             raise UnresolvedError(f"What shall I look for {thing.text}?")
-        if thing.not_an_object and not (_ONES.search(thing.text) and self.topic):
+        if thing.not_an_object and not (has_one(thing.text) and self.topic):
             raise UnresolvedError(f"I did not understand '{thing.text}'. Which thing do you mean?")
-        if (thing.text.endswith((" one", " ones")) or thing.text.startswith("ones ")) and not self.topic:
+        if has_one(thing.text) and (thing.text.endswith((" one", " ones")) or thing.text.startswith("ones ")) and not self.topic:
             raise UnresolvedError(f"Which things do you mean by '{thing.text}'?")
         if thing.text:
             text = self._with_owner(replace(thing, text=self._with_object(self._with_noun(thing.text))))
@@ -111,7 +110,7 @@ class Names:
 
     def _with_noun(self, text: str) -> str:
         """Replace "one" with the last noun: after cars, "the nearest one" means the nearest car."""
-        if not _ONES.search(text):
+        if not has_one(text):
             return text
         if not self.antecedent:
             return with_noun(text, self._ones(text))
@@ -120,7 +119,7 @@ class Names:
         parts = re.split(rf"{prepositions}| (?:not )?\w+ing ", antecedent)
         is_in_phrase = len(parts) > 1 and re.search(rf"{prepositions}[\w ]*\bones?\b", text) is not None
         head = parts[-1 if is_in_phrase else 0].split(" ")[-1]  # after cars on the red bridge: "cars on the blue one"
-        return _ONES.sub(lambda match: noun(head, 2 if match[0].lower() == "ones" else 1), text) if head else text
+        return with_ones_replaced(text, lambda one: noun(head, 2 if one == "ones" else 1)) if head else text
 
     def _ones(self, text: str) -> str:
         """Return the earlier description to which "one" refers: of a person for "the one with the blue helmet"."""

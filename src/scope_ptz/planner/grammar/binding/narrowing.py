@@ -9,7 +9,7 @@ from scope_ptz.english.grammar.lexicon import lexicon, nouns_in
 from scope_ptz.english.grammar.parts_of_speech import parts_of_speech
 from scope_ptz.english.grammar.questions import question_tree as tree
 from scope_ptz.english.grammar.questions.question_parser import parse_description
-from scope_ptz.planner.grammar.binding.noun_heads import bare_noun
+from scope_ptz.planner.grammar.binding.noun_heads import bare_noun, with_ones_replaced
 from scope_ptz.planner.grammar.execution.answer_sentences import head_and_rest, noun
 
 _BOUNDARY = re.compile(
@@ -21,7 +21,6 @@ _VERBS = {
     "hold": "holding", "holds": "holding", "ride": "riding", "sit": "sitting", "stand": "standing", "walk": "walking",
     "say": "saying", "face": "facing",
 }  # fmt: skip
-_ONES = re.compile(r"\bones?\b", re.IGNORECASE)
 _WEARING = re.compile(r"\b(?:with|without|wearing|in) (?:the |an? )?(.+)$", re.IGNORECASE)
 _ITEM = re.compile(r"\b(?:wearing|with|without|carrying|holding) (?:an? |the )?((?:\w+ ){0,2}\w+)$", re.IGNORECASE)
 _CLOTHES = frozenset({"hat", "jacket", "vest", "clothes", "hard hat", "trousers", "dress", "skirt", "scarf", "shoes"})
@@ -80,7 +79,7 @@ def last_item(description: str) -> str:
 def with_noun(phrase: str, description: str) -> str:
     """Replace "one" by the noun of a description: "nearest one" becomes "nearest taxi" after "how many black taxis are there?"."""
     head = bare_noun(description)
-    return _ONES.sub(lambda match: noun(head, 2 if match[0].lower() == "ones" else 1), phrase) if head else phrase
+    return with_ones_replaced(phrase, lambda one: noun(head, 2 if one == "ones" else 1)) if head else phrase
 
 
 def is_worn(phrase: str) -> bool:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Callable
 from functools import lru_cache
 
 from scope_ptz.english import is_plural
@@ -11,6 +13,41 @@ from scope_ptz.english.grammar.questions.question_parser import parse_descriptio
 from scope_ptz.planner.grammar.execution.answer_sentences import head_and_rest
 
 _ANYONE = frozenset({"anyone", "anybody", "someone", "somebody", "everyone", "everybody", "who"})
+
+
+_NUMBERED = frozenset({
+    "bay", "berth", "block", "building", "bus", "channel", "dock", "door", "exit", "floor", "gate", "hall", "hangar",
+    "lane", "level", "line", "number", "pad", "phase", "pier", "platform", "pump", "room", "row", "runway", "section",
+    "sector", "shed", "silo", "slot", "space", "stage", "stand", "terminal", "tower", "track", "unit", "warehouse",
+    "yard", "zone",
+})  # fmt: skip
+"""Nouns after which "one" is a number: "platform one"."""
+
+_ONES = re.compile(r"\b(?:(?P<before>[\w'’-]+) )?(?P<one>ones?)\b", re.IGNORECASE)
+
+
+def has_one(text: str) -> bool:
+    """Return whether "one" or "ones" in a text stands for a noun: "the nearest one", unlike "platform one" and "number one"."""
+    return any(_stands_for_noun(match) for match in _ONES.finditer(text))
+
+
+def with_ones_replaced(text: str, replacement: Callable[[str], str]) -> str:
+    """Return a text in which each "one" or "ones" that stands for a noun is replaced.
+
+    Args:
+        text: The text.
+        replacement: Returns the noun for "one" or "ones".
+    """
+
+    def replaced(match: re.Match[str]) -> str:
+        before = f"{match['before']} " if match["before"] else ""
+        return f"{before}{replacement(match['one'].lower())}" if _stands_for_noun(match) else match[0]
+
+    return _ONES.sub(replaced, text)
+
+
+def _stands_for_noun(match: re.Match[str]) -> bool:
+    return match["one"].lower() == "ones" or (match["before"] or "").lower() not in _NUMBERED
 
 
 @lru_cache(maxsize=1024)

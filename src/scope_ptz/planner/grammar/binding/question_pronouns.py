@@ -9,7 +9,7 @@ from scope_ptz.english import article
 from scope_ptz.english.grammar.parts_of_speech import parts_of_speech
 from scope_ptz.planner.grammar.binding.focus import OF_THEM
 from scope_ptz.planner.grammar.binding.narrowing import last_item
-from scope_ptz.planner.grammar.binding.noun_heads import bare_noun, is_ranked, names_animal, names_person, names_several
+from scope_ptz.planner.grammar.binding.noun_heads import bare_noun, has_one, is_ranked, names_animal, names_person, names_several
 from scope_ptz.planner.grammar.execution.answer_sentences import head_and_rest, noun
 
 _SUBJECTS = frozenset({"it", "he", "she", "they", "him", "them", "those", "these"})
@@ -73,7 +73,7 @@ def with_noun_for_one(question: str, referent: Referent) -> str:
     if (worn := _ITEM_ONE.search(question)) is not None and (item := last_item(referent("ones"))):
         return f"{question[: worn.start('one')]}{article(item)}{question[worn.end('one') :]}"
     match = _ONE.search(question)
-    if match is None:
+    if match is None or not has_one(match[0]):
         return question
     if not (description := referent("ones")):
         return question

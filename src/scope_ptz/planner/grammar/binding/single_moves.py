@@ -9,7 +9,9 @@ from typing import Literal
 from scope_ptz.planner.grammar import instruction_tree as ast
 
 _WAYS = {("pan", 1): "right", ("pan", -1): "left", ("tilt", 1): "up", ("tilt", -1): "down"}
-_AXES = {way: axis for (axis, _), way in _WAYS.items()} | {"in": "zoom", "out": "zoom"}
+_AXES: dict[str, Literal["pan", "tilt", "zoom"]] = {
+    "left": "pan", "right": "pan", "up": "tilt", "down": "tilt", "in": "zoom", "out": "zoom",
+}  # fmt: skip
 _OPPOSITE = {"left": "right", "right": "left", "up": "down", "down": "up", "in": "out", "out": "in"}
 _ALL_THE_WAY = "all the way"
 _SIZES = {"little": "a bit", "lot": "a lot", "limit": _ALL_THE_WAY, "unspecified": ""}
@@ -36,11 +38,6 @@ class SingleMove:
             return f"{self.axis} {self.size} {self.way}"
         return f"{self.axis} {self.way} {self.size}".strip()
 
-    @property
-    def degrees(self) -> float | None:
-        """The angle of a turn in degrees; None for a zoom, or if the instruction gives no number."""
-        return float(self.size.removesuffix(" degrees")) if self.size.endswith(" degrees") else None
-
     def reversed(self) -> SingleMove:
         """Return the move by the same amount in the opposite direction."""
         return replace(self, way=_OPPOSITE[self.way])
@@ -54,15 +51,14 @@ class SingleMove:
         return replace(self, size=f"{number:g} times") if unit in {"", "times"} else None
 
 
-def axis_of_way(way: str) -> str:
+def axis_of_way(way: str) -> Literal["pan", "tilt", "zoom"]:
     """Return the axis of a direction: "pan" for "left"."""
     return _AXES[way]
 
 
 def towards(way: str) -> SingleMove:
     """Return the move in a direction, without an amount."""
-    axis: Literal["pan", "tilt", "zoom"] = "zoom" if way in {"in", "out"} else "pan" if way in {"left", "right"} else "tilt"
-    return SingleMove(axis, way)
+    return SingleMove(axis_of_way(way), way)
 
 
 def single_move(steps: Sequence[ast.Step]) -> SingleMove | None:

@@ -103,7 +103,7 @@ _CANNOT = (
 def impossible_request(instruction: str) -> str:
     """Return why a request that was not understood cannot be carried out: "open the gate". Empty for other texts.
 
-    It is called only if the text is no camera command, so "turn on the spot" does not get here.
+    It is called only if the text was not understood, so "turn on the spot" does not get here.
     """
     lexemes = bare_clause([x for x in lexemes_of(instruction) if not x.has("STOP", "QUESTION")])
     is_request = any(x.has("FREE") for x in lexemes)

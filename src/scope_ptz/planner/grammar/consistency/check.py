@@ -137,10 +137,14 @@ def objection_to_wording(instruction: str) -> str | None:
     return None if (words := unsafe_wording(instruction)) is None else not_understood([words])
 
 
+NOT_UNDERSTOOD = "I did not understand"
+"""The beginning of the questions about words that were not understood."""
+
+
 def not_understood(phrases: Sequence[str]) -> str:
     """Return the question that names the words that were not understood."""
     quoted = listing([f'"{phrase}"' for phrase in phrases])
-    return f"I did not understand {quoted}, so I did nothing. Please say it another way."
+    return f"{NOT_UNDERSTOOD} {quoted}, so I did nothing. Please say it another way."
 
 
 def unvisited_presets(words: Sequence[Word], evidence: Evidence, presets: Sequence[str]) -> list[Word]:

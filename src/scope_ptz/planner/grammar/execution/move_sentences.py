@@ -50,13 +50,15 @@ def report_of_move(arguments: Mapping[str, Any], made: Mapping[str, Any], result
 
 
 def _limit_text(axis: str, arguments: Mapping[str, Any]) -> str:
-    """Return where the camera is at an axis's limit: "zoomed out as far as it can"; empty if the move does not use the axis."""
+    """Return where the camera is at an axis's limit: "zoomed out as far as it can go"; empty if the move does not use the axis."""
     if axis == "zoom":
+        if not any(name.startswith("zoom") for name in arguments):
+            return ""
         zooms_in = arguments.get("zoom_factor", 1) > 1 or arguments.get("zoom_percent", 0) > 0
-        return f"zoomed {'in' if zooms_in or arguments.get('zoom_limit') == 'in' else 'out'} as far as it can"
+        return f"zoomed {'in' if zooms_in or arguments.get('zoom_limit') == 'in' else 'out'} as far as it can go"
     angle_deg = arguments.get(f"{axis}_deg", 0)
     verb, directions = ("turned", ("right", "left")) if axis == "pan" else ("tilted", ("up", "down"))
-    return f"{verb} {directions[0 if angle_deg > 0 else 1]} as far as it can" if angle_deg else ""
+    return f"{verb} {directions[0 if angle_deg > 0 else 1]} as far as it can go" if angle_deg else ""
 
 
 def degrees(value: float) -> str:

@@ -63,7 +63,11 @@ class ReturnSteps(RunState):
             self._visited = earlier
             yield from self._go_back_to(earlier[-1])
         else:
-            where = "where it started" if self.positions.start is not None else "where it was"
+            start = self.positions.start
+            if start is not None and not start.is_at(self._here()):
+                self._note("I no longer know an earlier position to go back to")
+                return
+            where = "where it started" if start is not None else "where it was"
             self._note(f"There is no earlier position to go back to: the camera is still {where}")
 
     def _back_to_start(self) -> CallGenerator:
@@ -132,7 +136,12 @@ class ReturnSteps(RunState):
     def _move_instead(self, move: ast.Move, start: Pose) -> CallGenerator:
         """Move to where a move from another start would have led, and say what the camera did in all."""
         wanted, before = unlimited_pose_after(arguments_of(move, start, self.limits), start, self.limits), self.pose
-        arguments = return_arguments(self.limits.clamp(wanted)[0], before, self.limits)
+        target, clamped = self.limits.clamp(wanted)
+        arguments = return_arguments(target, before, self.limits)
+        limits = f", as far as the {motion.limits_text(clamped)}" if clamped else ""
+        if not arguments and clamped:
+            self._note(f"The camera did not move{limits}; it is at {phrases.pose_text(self.pose.as_dict())}")
+            return
         if not arguments:
             self._note(f"The camera is already there: {phrases.pose_text(self.pose.as_dict())}")
             return
@@ -140,7 +149,7 @@ class ReturnSteps(RunState):
         moved = motion.move_text(return_arguments(self.pose, before, self.limits))
         in_all = return_arguments(self.pose, start, self.limits)
         total = f"so the camera has {motion.move_text(in_all)} in all" if in_all else "so the camera is back where it was"
-        report = f"I {moved}{self._shortfall_text(result, self.limits.clamp(wanted)[0])}"
+        report = f"I {moved}{self._shortfall_text(result, target) or limits}"
         pose = phrases.pose_text(result["pose"])
         self._note(
             f"{report}; the camera is now at {pose}" if is_same_pose(before, start) else f"{report}, {total}; it is now at {pose}"

@@ -59,7 +59,6 @@ from scope_ptz.planner.grammar.parsing.parts.statements import is_only_noun
 if TYPE_CHECKING:
     from scope_ptz.tools.arguments import View
 
-_EDGE = ("FILLER", "COMMA", "LEADFILLER", "FIRSTLY", "QUOTE", "INSTEAD", "DASH", "OPEN", "CLOSE", "AND", "BUT", "ATSAMETIME")
 _EMPTY_CLAUSE = r"(FILLER|LEADFILLER|FIRSTLY|COMMA|WRAPPER|PURPOSE|QUOTE|THEN|AND|SELF|HALT there)*"
 _CALL_SIGN = "CAMERA NUM? (from|this is) (LEADFILLER|CAMERA|FREE){1,2} NUM?"
 """The words that open a radio message: "camera one from control"."""

@@ -38,7 +38,7 @@ _LOOKING = r"(got|HAVEV|TELL|TELL-ING|COUNT|COUNT-ING|SHOW|TAKE|DESCRIBE|READ|SE
 
 
 _SEEING = (
-    r"(BE (there)? VISIBLE?|BE there|(can|do|did|could) SELF (ADVERB|FILLER)* (SEE|COUNT|READ)|there BE|SELF "
+    r"(BE (there)? VISIBLE?|BE there|(can|do|did|could) SELF (ADVERB|FILLER)* (SEE|COUNT|READ|make out|get)|there BE|SELF "
     r"(can|could|do|have)? (SEE|have|got (up|out|over)?)|HAVEV SELF (got (up|out|over)?)?|do we have|"
     r"can be SEE-ED|can be seen|BE VISIBLE|"
     r"are we (SEE-ING|AIM-ING at)|you are SEE-ING|exist|VISIBLE|BE|in total|in all|(what|that)? SELF (can)? (SEE|FIND)|"

@@ -33,7 +33,6 @@ _TAIL = (
     r"FIRSTLY|VISIBLE|QUOTE|INTURN|over|COMMA (?=over)|CAMERA|ORDINAL|for|me|is|what|i|need|want|NOW)*"
 )
 _SUPERLATIVES = frozenset({"busiest", "quietest", "fullest", "emptiest", "most crowded", "least crowded", "calmest"})
-_HOW = {"SHOW": "show", "AIM": "look", "USE": "use"}
 
 
 _BEGINNING = frozenset({"start", "starting", "initial", "original", "beginning", "opening"})
@@ -106,7 +105,7 @@ def listing_step(lexemes: Sequence[Lexeme]) -> Step | None:
                 r"views|bookmarks|"
                 r"PRESETNOUN) (LISTING|SHOW|DET|SELF|FILLER|list|DOV|BE|have|HAVEV|there|available|saved|stored|for|of|to|"
                 r"can|MODAL|SWITCH|i|go|does|CAMERA|exist|are|you|know|got|set|up|this|use|defined|configured|on|in|the|"
-                r"here|CARRY|names|have|choose|from|we|offer|VISIBLE|PREP|name|hold|WHOLETHING|system|memory|got|keep|"
+                r"here|it|knows|LISTING-S|one|been|save-ED|CARRY|names|have|choose|from|we|offer|VISIBLE|PREP|name|hold|WHOLETHING|system|memory|got|keep|"
                 r"(of|for|at) FREE+)*"
             ),
             lexemes,

@@ -113,6 +113,8 @@ def is_noun_phrase(lexemes: Sequence[Lexeme]) -> bool:
         return False
     if lexemes[0].has("PREP", "SELF") and not lexemes[0].has("DET", "ADVERB", "ANY", "FREE"):
         return False
+    if (len(lexemes) > 1 and lexemes[0].word in {"they", "he", "she"}) or search("FREE LEFT (one|ones|it|them)", lexemes):
+        return False  # "they left one" and "the builders left one out" are statements
     if lexemes[0].has("EXCEPT") or match_start("(on|in|at|by|off) (the|a|an|DET)? (FREE|PRESET)", lexemes):
         return False  # "on the boardwalk"
     if lexemes[-1].word == "can" and len(lexemes) > 1 and lexemes[-2].has("FREE"):

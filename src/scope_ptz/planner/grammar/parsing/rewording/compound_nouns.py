@@ -29,6 +29,7 @@ _CAMERA_NOUNS = frozenset({
 _HEADS = frozenset({
     "spot", "spots", "camera", "cameras", "pan", "pans", "circle", "cover", "covers", "watch", "post", "posts", "stop", "stops",
     "point", "points", "frame", "frames", "head", "heads", "film", "step", "steps", "board", "stand", "guard", "check", "swing",
+    "switch", "switches",
 })  # fmt: skip
 """Command words, and words for the camera, that can end a compound noun."""
 

@@ -52,6 +52,10 @@ def with_presets_compared(text: str, names: str) -> str:
         text: The text of an instruction.
         names: A pattern for the names of the presets.
     """
+    place = rf"(?:the )?(?P<{{}}>{names})"
+    counted = rf"compare (?:the )?number of (?P<what>[\w ]+?) (?:at|in|on) {place.format('one')} (?:with|and|to|against|vs)"
+    if both := re.fullmatch(rf"{counted} (?:that )?(?:at |in |on )?{place.format('other')}\W*", text, re.IGNORECASE):
+        return f"which has more {both['what']}, {both['one']} or {both['other']}?"
     goes = _GOES_THERE.search(text)
     asked = text[: goes.start()] if goes else text
     if (ending := _LAST_CLAUSE.search(asked)) is not None and not re.search(rf"\b(?:{names})\b", ending["last"], re.IGNORECASE):

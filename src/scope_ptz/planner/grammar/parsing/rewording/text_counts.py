@@ -14,6 +14,7 @@ NO_TOPIC = re.compile(
 """Words which show that a text is not a noun phrase."""
 
 COUNTS = (
+    (r"\b(are|is|were|was) (?:sat|stood|parked up) (?=at |in |on |by )", r"\1 "),
     (r"\bdo the counting of ", "count the "),
     (r"\bwhich is having\b", "which has"),
     (r"\bneed a number: ", "count the "),

@@ -8,6 +8,10 @@ _CLOSINGS = (
 )
 
 COURTESIES = (
+    (r"^(?-i:[A-Z])\w+ here, (?=i |can |could |please|we )", ""),
+    (r"^(?:just |only )?(?:trying|testing|checking|practising)(?: out)? (?:the |this |your )?[\w ]{1,30}: ", ""),
+    (r"[,.] (?:that|this) should (?:line it up|do it|get it|be enough|sort it)\W*$", ""),
+    (r"[,.] (?:that['’]?s|thats|that is) all it needs\W*$", ""),
     (r"[,.] [a-z]{3,15} behind (?:u|you|us|me)\W*$", ""),
     (r"\b(then|and) again (?=take |pan |tilt |zoom |turn )", r"\1 "),
     (
@@ -78,11 +82,12 @@ COURTESIES = (
     (r"^any idea (?=how many|what|where|who)", ""),
     (r"\b(?:could|can|shall) we (?=zoom|pan|tilt|turn|count)", "please "),
     (
-        r"^(?:commissioning|counting|absolute positioning|positioning|acceptance|range|function|regression|routine|optical) "
-        r"(?:step|test|check|case)(?: [\d.]+)? ?[:.] ",
+        r"^(?:commissioning|counting|tracking|following|panning|tilting|zooming|pan|tilt|zoom|focus"
+        r"|absolute positioning|positioning|acceptance|range|function|regression|routine|optical) "
+        r"(?:step|test|check|case)(?: [\d.]+)? ?[:.,] ",
         "",
     ),
-    (r"^(?:it|the camera) needs to (?=go|come|move|point|look)", ""),
+    (r"^(?:it|the camera|the picture|the view) needs to (?=go|come|move|point|look)", ""),
     (r",? (?:go on, )?(?:have|take) a guess\W*$", ""),
     (r"^interrogative,? ", ""),
     (r"^cam(?:era)? ?\d to (?=\w)", "go to "),

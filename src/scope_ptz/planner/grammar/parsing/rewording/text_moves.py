@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 
 _PICTURES = "photo|picture|pic|snap|shot|still"
-_GLANCES = "look|nosy|nosey|gander|peek|butcher['’]s|squiz|shufti|squint|glance"
 _ENDS = {"lower": "down", "upper": "up", "left": "left", "right": "right"}
 _TURNED = {
     "rotated": "rotate", "panned": "pan", "turned": "turn", "tilted": "tilt", "moved": "move", "zoomed": "zoom", "pointed": "point",
@@ -235,11 +234,6 @@ def _other_way(text: str) -> str:
         return text
     opposite = _OPPOSITES[named[0].lower()]
     return re.sub(r"(?:back )?(\d+)(?: degrees)? the other way\b", rf"{opposite} \1 degrees", text, flags=re.IGNORECASE)
-
-
-def _each_after_the_other(match: re.Match[str]) -> str:
-    """Return "left 5, then left 5, then left 5" for "left 5, left 5, left 5"."""
-    return ", then ".join([match[1]] * len(re.findall(re.escape(match[1]), match[0], re.IGNORECASE)))
 
 
 def _steps(word: str) -> str:

@@ -7,13 +7,7 @@ _VOCATIVES = (
     "|my friend|son|bro|bruv|dude|jeeves|james|fella|fellas|champ|big man|mind|mind you|my love|petal|treacle"
 )
 _GREETINGS = "hey|hi|hello|ok|okay|morning|evening|thanks|cheers|listen|look"
-_TIMES_OF_DAY = "of the (?:day|morning|shift|night)|this morning|today|tonight"
-_CHILDREN = "girl|boy|one|lad|son|daughter|brother|sister"
-_NOBODY = "nobody|no[ -]?one|none|neither|who|which|i |we |and |but "
 _NOTHING_ELSE = r"don['’]?t bother|leave it(?: be| alone)?|never mind|forget (?:about )?it|no worries|that['’]s fine|fine"
-_NOT_ALLOWED = r"(?:(?:are|is) not|(?:are|is)n['’]t|['’](?:re|s) not) (?:allowed|permitted|supposed to be|meant to be)"
-_MUST_NOT = rf"(?:{_NOT_ALLOWED}(?: in| on| there| here| it)*|mustn['’]t|shouldn['’]t)"
-_SHARES = r"(?:a |one |two |three )?(?:half|thirds?|quarters?|full|empty)(?: full| empty)?"
 
 REMARKS = (
     (r",? (?:and )?i(?: just)?(?: want| need|['’]d like| would like) to show (?:him|her|them|(?:my|our) \w+)\W*$", ""),

@@ -7,6 +7,9 @@ _DIGITS = {
 }  # fmt: skip
 
 WORDS = {
+    "closr": "closer",
+    "hedcount": "headcount",
+    "hwo": "how",
     "execute": "do",
     "perform": "do",
     "abit": "a bit",

@@ -13,6 +13,11 @@ _LEAVE_OUT = (
 
 WITHDRAWALS = (
     (
+        r"[,;.] (?:and |but )?(?:please )?(?:don['’]?t|do not) bother (?:with|about|counting) (?:the |a |an |any )?"
+        r"(?!(?:pan|tilt|zoom|turn|mov)\w*)[\w ]{1,20}\W*$",
+        "",
+    ),
+    (
         r"^(?:i['’]ll|i will) (?:do|pan|tilt|zoom|handle|move|swing|turn)\b[^,.;]*[,.;] (?:you )?(?=(?:just |please )?(?:count"
         r"|pan|tilt|zoom|take|go|tell)\b)",
         "",
