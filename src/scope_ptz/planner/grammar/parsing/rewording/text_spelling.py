@@ -50,6 +50,7 @@ WORDS = {
 """Misspelt, shortened and dialect words with their standard forms."""
 
 SPELLING = (
+    (r"\ball way\b", "all the way"),
     (r"\btheres\b", "there's"),
     (r"\bcarry out (?=an? |the )", "do "),
     (r"(?<!['’\w])th?['’](?=[a-z])", "the "),
