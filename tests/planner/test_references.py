@@ -8,6 +8,7 @@ import pytest
 
 from scope_ptz.planner.base import PastTurn
 from scope_ptz.planner.grammar.binding.asked_things import asked_thing, with_other_thing
+from scope_ptz.planner.grammar.binding.focus import Focus, which_one
 from scope_ptz.planner.grammar.binding.narrowing import narrowed
 from tests.planner.stage import Stage
 
@@ -234,11 +235,111 @@ def test_a_command_is_followed_up(before: str, follow_up: str, expected: tuple[s
 def test_another_one_is_asked_about() -> None:
     assert last_turn("how many signs are there?", "zoom in on one of them", count=3) == (
         [],
-        "Which one do you mean? Please describe it.",
+        "Which of the 3 signs do you mean?",
     )
     assert last_turn("zoom in on the red sign", "and the other one") == (
-        [], "Which other one do you mean? Please describe it.",
+        [], "Which other sign do you mean? Please describe it.",
     )  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("instructions", "expected"),
+    [
+        (("how many people in the top left quarter?", "and in the bottom right one?"), "people in the bottom right quarter"),
+        (("how many people in the top left quarter?", "and the bottom right one?"), "people in the bottom right quarter"),
+        (("how many people are there?", "and the left half?"), "people in the left half"),
+        (("how many people are there?", "and in the right half, how many people?"), "people in the right half"),
+        (("how many people are in the left half, and how many in the right?",), "people in the right half"),
+        (("how many dogs are there?", "do they have collars?", "undo", "and in the left half?"), "dogs in the left half"),
+    ],
+)
+def test_another_part_of_the_picture_is_counted(instructions: tuple[str, ...], expected: str) -> None:
+    assert last_turn(*instructions, count=3)[0][-1] == (COUNT, expected)
+
+
+def test_one_of_the_things_counted_is_asked_about() -> None:
+    earlier = ("how many taxis are there?", "what about the left one?")
+    assert last_turn(*earlier, count=2) == ([], "What would you like to know about the left taxi?")
+    assert last_turn(*earlier, "what colour is it?", count=2)[0] == [(ASK, "what colour is the left taxi?")]
+    assert last_turn(*earlier, "and the right one?", count=2) == ([], "What would you like to know about the right taxi?")
+
+
+def test_a_topic_and_its_question_are_read_together() -> None:
+    both = ("how many taxis are there?", "what about the left one, what colour is it?")
+    assert last_turn(*both, count=2)[0] == [(ASK, "what colour is the left taxi?")]
+    statue = "what about the statue, what colour is it?"
+    assert last_turn(statue)[0] == [(ASK, "what colour is the statue?")]
+    assert last_turn(statue, "and the fountain?")[0] == [(ASK, "what colour is the fountain?")]
+
+
+@pytest.mark.parametrize("wording", ["zoom in on him please", "zoom into him please", "zoom in on him thanks"])
+def test_courtesy_leaves_the_object_of_a_zoom(wording: str) -> None:
+    assert last_turn("where is the man at the kiosk?", wording)[0] == [(ZOOM, "man at the kiosk")]
+    assert not last_turn(wording)[0]
+
+
+@pytest.mark.parametrize(
+    ("follow_up", "expected"),
+    [
+        ("where?", (ASK, "where are the red vehicles?")),
+        ("which is farthest?", (ASK, "which red vehicle is farthest?")),
+        ("zoom in on the red one", (ZOOM, "red vehicle")),
+    ],
+)
+def test_follow_ups_stay_with_the_things_that_were_narrowed_to(follow_up: str, expected: tuple[str, str]) -> None:
+    assert last_turn("how many vehicles?", "and the red ones?", follow_up, count=3)[0] == [expected]
+
+
+@pytest.mark.parametrize(
+    ("instructions", "expected"),
+    [
+        (("where are the taxi and the bus?", "zoom in on the taxi", "now the other one"), "bus"),
+        (("zoom in on the taxi", "zoom in on the bus", "no, the other one"), "taxi"),
+        (("zoom in on the dog", "no, the woman on the left"), "woman on the left"),
+        (("zoom in on the dog", "no, on the van"), "van"),
+        (("zoom in on the red stall", "and the one next to it?"), "stall next to the red stall"),
+    ],
+)
+def test_the_other_thing_is_zoomed_in_on(instructions: tuple[str, ...], expected: str) -> None:
+    assert last_turn(*instructions)[0] == [(ZOOM, expected)]
+
+
+@pytest.mark.parametrize(
+    ("instructions", "question"),
+    [
+        (("zoom in on the dog", "no, the other dog"), "Which other dog do you mean? Please describe it."),
+        (("zoom in on the dog", "and the others?"), "Which other dogs do you mean? Please describe them."),
+        (("zoom in on the stall", "and the one next to it?"), "Which other stall do you mean? Please describe it."),
+        (("how many dogs are there?", "zoom in on one"), "Which of the 3 dogs do you mean?"),
+        (("how many dogs are there?", "zoom in on both"), "Which of the 3 dogs do you mean?"),
+        (("how many dogs are there?", "zoom in on both", "both of them"), "Which of the 3 dogs do you mean?"),
+        (
+            ("zoom in on the dog", "no, 2x"),
+            "A thing I zoom in on fills the view. Shall I do that, or zoom where I look now?",
+        ),
+        (("how many dogs are there?", "and altogether?"), "What shall I add up? Please name the things to count."),
+    ],
+)
+def test_what_is_unclear_is_asked_about_by_name(instructions: tuple[str, ...], question: str) -> None:
+    assert last_turn(*instructions, count=3) == ([], question)
+
+
+def test_the_answer_to_which_one_completes_the_zoom() -> None:
+    assert last_turn("how many dogs are there?", "zoom in on one", "the left one", count=3)[0] == [(ZOOM, "left dog")]
+    assert last_turn("how many dogs are there?", "zoom in on one")[0] == [(ZOOM, "dog")]
+
+
+def test_the_latest_counts_are_added() -> None:
+    assert last_turn("how many dogs are there?", "how many cats?", "and altogether?")[0] == [(COUNT, "dogs"), (COUNT, "cats")]
+
+
+def test_a_question_about_it_is_about_the_place_just_visited() -> None:
+    assert last_turn("is there a sign?", "go to the gate", "is it full?")[0] == [(ASK, "is the gate full?")]
+    assert last_turn("is there a sign?", "go to the gate", "zoom in on it")[0] == [(ZOOM, "sign")]
+
+
+def test_several_people_are_named_in_the_plural() -> None:
+    assert which_one(Focus("man pointing", 6, "query_answer")) == "Which of the 6 men pointing do you mean?"
 
 
 def test_one_with_clothes_is_a_person() -> None:

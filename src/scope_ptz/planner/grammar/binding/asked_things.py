@@ -78,6 +78,16 @@ def asked_thing(question: str) -> AskedThing | None:
     return None
 
 
+def two_things(question: str) -> tuple[str, ...]:
+    """Return the two things of a question: "taxi" and "bus" for "where are the taxi and the bus?"; nothing for others."""
+    described = _described(parse_question(question))
+    if described is None or len(described.phrases) != 2:
+        return ()
+    if any(phrase.tests or phrase.order or phrase.ordinal for phrase in described.phrases):
+        return ()  # their words alone do not describe them
+    return tuple(" ".join(phrase.words) for phrase in described.phrases)
+
+
 def with_other_thing(question: str, description: str) -> str | None:
     """Return the same question about another thing: "what colour is the green lorry?"; None if it asks about no thing."""
     thing = asked_thing(question)

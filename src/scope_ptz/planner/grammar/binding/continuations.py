@@ -19,7 +19,7 @@ from scope_ptz.planner.grammar.binding.single_moves import SingleMove, single_mo
 from scope_ptz.planner.grammar.execution.camera_history import Effect
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme, lexemes_of
 from scope_ptz.planner.grammar.parsing.instruction_parser import parse
-from scope_ptz.planner.grammar.parsing.parts.patterns import full_match
+from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start
 
 if TYPE_CHECKING:
     from scope_ptz.planner.base import PastTurn
@@ -48,9 +48,15 @@ _CORRECTION = re.compile(r"(?:no|nope|sorry|wait|oops|i meant|i mean|i said|make
 _ASKED = re.compile(r"By (?:how many degrees|what factor) shall I (?:pan|tilt|zoom) (left|right|up|down|in|out)\?")
 """The question about "the other way", which the next turn may answer with an amount."""
 
+_NO_LEAD = "(FILLER|oh|COMMA|DASH|STOP)* (no|nope|nah|oops|wait|sorry) (FILLER|no|wait|sorry|COMMA|DASH|STOP)*"
+"""Words before a command that reject the last one."""
+
 _SHARE = "(FILLER|AND|THEN)* ((?P<fraction>FRACTION)|(?P<twice>TWICE)) (of)? (that|it) (FILLER|AGAINWORD)*"
 _MAX_LEXEMES = 16  # longer instructions neither continue nor correct an earlier turn
 _DONE_WITHOUT_CALLS = (ast.CameraState, ast.Help)
+FILLS_THE_VIEW = "A thing I zoom in on fills the view. Shall I do that, or zoom where I look now?"
+"""The question about a factor for a zoom on a thing."""
+
 NOTHING_DONE = "Then I do nothing. What shall I do instead?"
 """The reply to a bare "no" and to a command that is withdrawn."""
 
@@ -92,6 +98,7 @@ def commands_of(conversation: Sequence[PastTurn], presets: tuple[str, ...]) -> l
 def _effect(turn: PastTurn, steps: Sequence[ast.Step], before: Sequence[Command], *, corrects: bool) -> Effect:
     """Return what came of a turn."""
     was_done = any(outcome.error is None for exchange in turn.exchanges for outcome in exchange.outcomes)
+    steps = [step for step in steps if not isinstance(step, ast.Forbid)]  # "scrap that, go back"
     last = next((command.effect for command in reversed(before) if command.effect != "nothing"), "nothing")
     if was_done and steps and all(_returns(step, is_trip_back=last == "returned") for step in steps):
         return "returned"
@@ -120,6 +127,8 @@ def _continuation(
     lexemes = lexemes_of(said, presets)
     if not conversation or not lexemes or len(lexemes) > _MAX_LEXEMES:
         return Continuation(instruction)
+    if (wanted := _return_after_no(lexemes, said, presets)) is not None:
+        return Continuation(wanted)
     last = standing_command(commands)
     if (answered := _answer_about_other_way(lexemes, conversation[-1], last)) is not None:
         return Continuation(answered)
@@ -131,6 +140,8 @@ def _continuation(
             return Continuation(meant, corrects=True)
     if last is None:
         return Continuation(instruction)
+    if _amount_after_close_up(lexemes, last):
+        return Continuation(said, question=FILLS_THE_VIEW)
     move = single_move(last.steps)
     if move is not None and turns_the_other_way(lexemes):
         return _other_way(said, lexemes, move)
@@ -141,6 +152,22 @@ def _continuation(
     if (again := _same_axis_again(said, lexemes, commands, presets) or _share_of_zoom(lexemes, move)) is not None:
         return Continuation(again)
     return Continuation(_more(said, move) or _measured_by_last(said, last, presets) or instruction)
+
+
+def _return_after_no(lexemes: Sequence[Lexeme], said: str, presets: tuple[str, ...]) -> str | None:
+    """Return "go back" for "no, go back", which rejects the last command and says to take it back; None for others."""
+    lead = match_start(_NO_LEAD, lexemes)
+    if lead is None or lead.size >= len(lexemes):
+        return None
+    wanted = said[lexemes[lead.size].start :]
+    steps = parse(wanted, presets).steps or ()
+    return wanted if steps and all(_returns(step, is_trip_back=False) for step in steps) else None
+
+
+def _amount_after_close_up(lexemes: Sequence[Lexeme], last: Command) -> bool:
+    """Return whether a correction only names a factor, such as "no, 2x", although the last command zoomed in on a thing."""
+    is_close_up = len(last.steps) == 1 and isinstance(last.steps[0], ast.ZoomTo)
+    return is_close_up and full_match(f"{_NO_LEAD} (make it|by|to|FILLER)* NUM (X|PERCENT) (FILLER|STOP)*", lexemes) is not None
 
 
 def _answer_about_other_way(lexemes: Sequence[Lexeme], turn: PastTurn, last: Command | None) -> str | None:

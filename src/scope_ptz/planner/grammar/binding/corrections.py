@@ -131,6 +131,8 @@ def _sized(move: SingleMove, match: Match, lexemes: Sequence[Lexeme]) -> SingleM
 
 def _with_other_thing(step: ast.Step, thing: str, lexemes: Sequence[Lexeme]) -> str | None:
     """Return the command for another thing: "zoom in on the red one"."""
+    if isinstance(step, ast.ZoomTo) and lexemes[0].word in {"on", "onto"} and len(lexemes) > 1:
+        lexemes, thing = lexemes[1:], thing[lexemes[1].start - lexemes[0].start :]  # "no, on the van"
     if not (lexemes[0].has("DET") and len(lexemes) > 1 and is_noun_phrase(lexemes)):
         return None
     if isinstance(step, ast.ZoomTo):

@@ -8,8 +8,15 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
 
 from scope_ptz.english.grammar.questions.recognition import looks_like_description
-from scope_ptz.planner.grammar.binding.asked_things import asked_thing
-from scope_ptz.planner.grammar.binding.noun_heads import head_noun, may_name_person, names_animal, names_person, names_several
+from scope_ptz.planner.grammar.binding.asked_things import asked_thing, two_things
+from scope_ptz.planner.grammar.binding.noun_heads import (
+    head_noun,
+    may_name_person,
+    names_animal,
+    names_person,
+    names_several,
+    noun_end,
+)
 from scope_ptz.planner.grammar.execution.answer_sentences import noun
 
 if TYPE_CHECKING:
@@ -38,7 +45,8 @@ PLURAL = frozenset({"they", "them", "their", "theirs", "these", "those", "ones",
 OF_THEM = "of them"
 """Stands for the pronoun of "how many of them", which refers to several things and not to a single person."""
 
-Look = Literal["count_objects", "query_answer", "zoom_to_object", "track_object"]
+Look = Literal["count_objects", "query_answer", "zoom_to_object", "track_object", "named"]
+"""The tool that looked; "named" for a thing that the user named without saying what to do with it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,9 +87,33 @@ def foci_of(conversation: Sequence[PastTurn]) -> tuple[Focus, ...]:
         before = foci[-1] if foci else None
         outcomes = [outcome for exchange in turn.exchanges for outcome in exchange.outcomes if outcome.error is None]
         found = [focus for outcome in outcomes for focus in _foci_of_look(outcome)]
+        if not turn.exchanges and (named := _LIKE_TO_KNOW.fullmatch(turn.reply)) is not None:
+            foci.append(Focus(named[1], 1, "named"))
         is_share = before is not None and _SHARE.search(turn.instruction) is not None
         foci += [replace(f, whole=_shared(before, f)) if is_share and before is not None else f for f in found]
     return tuple(foci)
+
+
+def things_named(conversation: Sequence[PastTurn]) -> tuple[str, ...]:
+    """Return the descriptions of the single things that the latest looks named, in the order in which they were named."""
+    named: list[str] = []
+    for turn in conversation[-_RECENT:]:
+        for outcome in (outcome for exchange in turn.exchanges for outcome in exchange.outcomes):
+            question = str(outcome.call.arguments.get("question", ""))
+            both = two_things(question) if question else ()
+            named += both or [focus.description for focus in _foci_of_look(outcome)]
+    return tuple(thing for thing in dict.fromkeys(named) if not names_several(thing))
+
+
+def latest_counts(conversation: Sequence[PastTurn]) -> tuple[str, ...]:
+    """Return the descriptions that the latest turns counted, oldest first, back to the last turn that did anything else."""
+    counted: list[str] = []
+    for turn in reversed(conversation):
+        calls = [outcome.call for exchange in turn.exchanges for outcome in exchange.outcomes]
+        if not calls or any(call.name != "count_objects" for call in calls):
+            break
+        counted = [*(str(call.arguments["description"]) for call in calls), *counted]
+    return tuple(dict.fromkeys(counted))
 
 
 def _shared(before: Focus, focus: Focus) -> str:
@@ -162,4 +194,18 @@ WHICH_ONE = "Which of the "
 def which_one(focus: Focus) -> str:
     """Return the question about a pronoun in the singular that may refer to several things."""
     number = f"{focus.number} " if focus.number else ""
-    return f"{WHICH_ONE}{number}{noun(focus.description, 2)} do you mean?"
+    return f"{WHICH_ONE}{number}{_several(focus.description)} do you mean?"
+
+
+def _several(description: str) -> str:
+    """Return a description in the plural: "men pointing" for "man pointing", whose participle is not the noun."""
+    end = noun_end(description)
+    return noun(description[:end], 2) + description[end:] if end else noun(description, 2)
+
+
+def like_to_know(description: str) -> str:
+    """Return the question about a thing that the user named without saying what to do with it."""
+    return f"What would you like to know about the {description}?"
+
+
+_LIKE_TO_KNOW = re.compile(re.escape(like_to_know("THING")).replace("THING", "(.+)"))

@@ -10,11 +10,16 @@ from scope_ptz.english.grammar.lexicon import lexicon
 from scope_ptz.english.grammar.parts_of_speech import parts_of_speech
 from scope_ptz.english.grammar.questions.recognition import is_description
 from scope_ptz.planner.grammar import instruction_tree as ast
+from scope_ptz.planner.grammar.binding.narrowing import names_region
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme, lexemes_of
+from scope_ptz.planner.grammar.parsing.instruction_parser import parse
 from scope_ptz.planner.grammar.parsing.parts.clause import Source, text_of, trimmed
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, search
 
 _LEAD = "(FILLER|COMMA|AND|BUT|NOW|LEADFILLER|FIRSTLY|now|ok|okay|then|so|also|what_about|how_about)*"
+_REJECTING = "(FILLER|COMMA)* (no|nope|nah) ((COMMA|DASH)+|(?=the))"
+"""The beginning of a follow-up that corrects the turn before: "no, the woman on the left"."""
+
 _END = "(FILLER|COMMA|QUESTION|STOP|NOW|then|VISIBLE)*"
 _DETERMINER = "(DET|EVERY)"
 _PREPOSITIONS = frozenset({
@@ -43,6 +48,10 @@ def _followup(source: Source, lexemes: Sequence[Lexeme]) -> ast.Step | None:
         return ast.Ask("where are they?")
     if full_match(f"{_LEAD} READ (them|those|these|both|all) (of|all|both|them|those|these|out|aloud)* {_END}", lexemes):
         return ast.Read(ast.Thing(pronoun="them"))
+    if (
+        chosen := full_match(f"{_LEAD} (ZOOM IN|ZOOM_IN) (on|onto|to) (?P<which>one|both|all|each) (of)? (PRON)? {_END}", lexemes)
+    ) is not None:
+        return ast.ZoomTo(ast.Thing(pronoun="one" if chosen["which"][0].word == "one" else "both"))
     if search("one of (them|those|these)", lexemes):
         return ast.Unclear("Which one do you mean? Please describe it.")
     if any_of := full_match(
@@ -50,8 +59,12 @@ def _followup(source: Source, lexemes: Sequence[Lexeme]) -> ast.Step | None:
     ):
         predicate = text_of(source, any_of["predicate"])
         return ast.Ask(f"any of them {predicate}?") if is_predicate(predicate) else None
-    match = full_match(f"(?P<lead>{_LEAD}) (?P<what>_+?) {_END}", lexemes)
-    if match is None:
+    if full_match(f"{_LEAD} (altogether|together|in_total|in_all|in total|in all|combined|total) {_END}", lexemes):
+        return ast.Total(())
+    if fronted := full_match(f"{_LEAD} (?P<place>PREP _+?) COMMA (?P<count>HOWMANY _+)", lexemes):
+        return _count_in(text_of(source, fronted["place"]), text_of(source, fronted["count"]), source.presets)
+    match = full_match(f"(?P<lead>({_REJECTING})? {_LEAD}) (?P<what>_+?) {_END}", lexemes)
+    if match is None or any(x.has("COMMA") for x in match["what"]):
         return None
     what, is_led = match["what"], match.has("lead") and any(not x.has("FILLER", "COMMA") for x in match["lead"])
     if full_match("(all|both|each)? (of)? PRON (all|both)?|(both|all|each)", what):
@@ -61,11 +74,44 @@ def _followup(source: Source, lexemes: Sequence[Lexeme]) -> ast.Step | None:
     if phrase is not None:
         noun_phrase = text_of(source, phrase["noun"])
         has_one = any(x.word in {"one", "ones"} for x in phrase["noun"])
-        if noun_phrase.lower() in {"other one", "other ones", "other", "others"}:
-            return ast.Unclear("Which other one do you mean? Please describe it.")
+        if is_other(noun_phrase):
+            return ast.WhatAbout(ast.Thing(noun_phrase, definite=True))
+        if is_led and names_region(noun_phrase):
+            return ast.WhatAbout(ast.Thing(predicate=f"in the {noun_phrase}"))
         return ast.WhatAbout(ast.Thing(noun_phrase, definite=True)) if has_one or (is_led and is_description(noun_phrase)) else None
     predicate = text_of(source, what)
     return ast.WhatAbout(ast.Thing(predicate=predicate)) if is_led and is_predicate(predicate) else None
+
+
+def question_about_topic(text: str, presets: tuple[str, ...]) -> tuple[ast.Step, ...] | None:
+    """Return the steps of "what about the left one, what colour is it?": the thing, and the question about it; None for others."""
+    lexemes = trimmed(lexemes_of(text, presets), "STOP", "QUESTION")
+    if not 0 < len(lexemes) <= _MAX_LEXEMES + 4:
+        return None
+    lead = "(FILLER|COMMA|AND|BUT|now|so)* (what_about|how_about)"
+    match = full_match(f"{lead} DET (?P<noun>_+?) (COMMA|DASH|QUESTION)+ (AND)? (?P<asked>_+)", lexemes)
+    if match is None or not any(x.has("PRON") for x in match["asked"]) or any(x.has("COMMA") for x in match["noun"]):
+        return None
+    source = Source(text, presets)
+    asked = parse(f"{text_of(source, match['asked'])}?", presets).steps or ()
+    if not asked or not all(isinstance(step, ast.Ask | ast.Count | ast.Read) for step in asked):
+        return None
+    return (ast.Mention(ast.Thing(text_of(source, match["noun"]), definite=True)), *asked)
+
+
+def _count_in(place: str, count: str, presets: tuple[str, ...]) -> ast.Step | None:
+    """Return the count of "in the right half, how many people?"; None if the words are no count and a place in the picture."""
+    steps = parse(f"{count}?", presets).steps or ()
+    if len(steps) != 1 or not isinstance(steps[0], ast.Count) or len(steps[0].things) != 1 or not is_predicate(place):
+        return None
+    thing = steps[0].things[0]
+    described = ast.Thing(f"{thing.text} {place}") if thing.text else ast.Thing(pronoun="them", predicate=place)
+    return ast.Count((described,), steps[0].view)
+
+
+def is_other(noun_phrase: str) -> bool:
+    """Return whether a noun phrase is "the other one", "the others" or "the other dog"."""
+    return noun_phrase.lower().split(" ")[0] in {"other", "others"}
 
 
 def is_predicate(text: str) -> bool:

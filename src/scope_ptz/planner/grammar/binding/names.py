@@ -7,11 +7,20 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
+from scope_ptz.english.grammar.lexicon import lexicon
 from scope_ptz.planner.grammar import instruction_tree as ast
 from scope_ptz.planner.grammar.binding.earlier_comparison import EarlierCount, counts_at_presets, last_preset
-from scope_ptz.planner.grammar.binding.focus import OF_THEM, PERSONAL, PLURAL, Focus, foci_of, referent, which_one
-from scope_ptz.planner.grammar.binding.narrowing import is_worn, narrowed, with_noun
-from scope_ptz.planner.grammar.binding.noun_heads import has_one, may_name_person, names_person, with_ones_replaced
+from scope_ptz.planner.grammar.binding.focus import OF_THEM, PERSONAL, PLURAL, Focus, foci_of, referent, things_named, which_one
+from scope_ptz.planner.grammar.binding.narrowing import is_worn, narrowed, with_noun, with_region_noun
+from scope_ptz.planner.grammar.binding.noun_heads import (
+    bare_noun,
+    has_one,
+    head_noun,
+    may_name_person,
+    names_person,
+    names_several,
+    with_ones_replaced,
+)
 from scope_ptz.planner.grammar.binding.preset_matching import match_preset, plausible_name
 from scope_ptz.planner.grammar.execution.answer_sentences import noun
 
@@ -20,6 +29,7 @@ if TYPE_CHECKING:
     from scope_ptz.tools.arguments import View
 
 _NOT_OBJECTS = frozenset({"nothing", "around", "everywhere", "there", "here", "away", "about"})
+_OTHER = re.compile(r"other(?:s| (?P<noun>\w+))", re.IGNORECASE)
 _OBJECT_PRONOUN = re.compile(
     r"\b(?:of|to|behind|beside|near|above|below|under|on|in|by|around|with|opposite|from|than) (?P<pronoun>it|him|her|them)$",
     re.IGNORECASE,
@@ -86,6 +96,26 @@ class Names:
             raise UnresolvedError(which_one(found))
         return found.one
 
+    def _place_just_visited(self) -> str:
+        """Return the place whose preset the last turn went to, without looking for anything; empty if it did something else.
+
+        Only the name of a known kind of place can be what "it" refers to: "car park", but not "overview".
+        """
+        calls = [o.call for exchange in self.conversation[-1].exchanges for o in exchange.outcomes] if self.conversation else []
+        if [call.name for call in calls] != ["go_to_preset"]:
+            return ""
+        name = str(calls[0].arguments["name"]).replace("-", " ")
+        return name if bare_noun(name) == name and lexicon().concept(name) is not None else ""
+
+    def referent_in_question(self, pronoun: str) -> str:
+        """Return the description that a pronoun in a question refers to; "it" may be the place that was gone to just before.
+
+        Raises:
+            UnresolvedError: The pronoun may refer to several things, or to a person although none has been named.
+        """
+        place = self._place_just_visited() if pronoun == "it" and not self.antecedent else ""
+        return place or self.referent(pronoun)
+
     def thing(self, thing: ast.Thing) -> ast.Thing:
         """Return a reference to an object with its pronouns resolved, and remember it for later pronouns."""
         if thing.text.lower() in _NOT_OBJECTS:
@@ -94,6 +124,9 @@ class Names:
             raise UnresolvedError(f"I did not understand '{thing.text}'. Which thing do you mean?")
         if has_one(thing.text) and (thing.text.endswith((" one", " ones")) or thing.text.startswith("ones ")) and not self.topic:
             raise UnresolvedError(f"Which things do you mean by '{thing.text}'?")
+        if (other := _OTHER.fullmatch(thing.text)) is not None and thing.definite and self.foci:
+            self.antecedent = self._other(other["noun"] or "")
+            return ast.Thing(self.antecedent, definite=True)
         if thing.text:
             text = self._with_owner(replace(thing, text=self._with_object(self._with_noun(thing.text))))
             self.antecedent = text
@@ -105,8 +138,29 @@ class Names:
                 raise UnresolvedError(f"Who do you mean by '{thing.pronoun}'? Please name the person.")
             word = thing.pronoun if thing.pronoun and self.conversation else "it"
             raise UnresolvedError(f"What do you mean by '{word}'? Please name the thing.")
-        self.antecedent = narrowed(description, thing.predicate) if thing.predicate else description
+        predicate = with_region_noun(thing.predicate, description)
+        self.antecedent = narrowed(description, predicate) if predicate else description
         return ast.Thing(self.antecedent, definite=True)
+
+    def _other(self, named: str) -> str:
+        """Return the description of "the other one": of two things that were named, the one that is not looked at now.
+
+        Args:
+            named: The noun after "other": "dog", "one", or nothing in "the others".
+
+        Raises:
+            UnresolvedError: It is not clear which thing is meant.
+        """
+        current = self.antecedent or self.foci[-1].description
+        kind = head_noun(noun(current if named in {"", "one", "ones"} else named, 1))
+        things = dict.fromkeys(thing.lower() for thing in things_named(self.conversation))
+        others = [thing for thing in things if thing != current.lower()]
+        is_kind = named == "one" or (len(others) == 1 and head_noun(others[0]) == kind)
+        if is_kind and len(others) == 1 and current.lower() in things:
+            return others[0]
+        is_several = named in {"", "ones"} or names_several(named)
+        which = f"Which other {noun(bare_noun(current) if named in {'', 'one', 'ones'} else named, 2 if is_several else 1)}"
+        raise UnresolvedError(f"{which} do you mean? Please describe {'them' if is_several else 'it'}.")
 
     def _with_noun(self, text: str) -> str:
         """Replace "one" with the last noun: after cars, "the nearest one" means the nearest car."""
@@ -132,7 +186,10 @@ class Names:
         match = _OBJECT_PRONOUN.search(text)
         if match is None or self.antecedent or not self.foci:
             return text
-        return f"{text[: match.start('pronoun')]}the {self.referent(match['pronoun'].lower())}"
+        described = self.referent(match["pronoun"].lower())
+        if text.lower().startswith(f"{described.lower()} "):  # "stall next to the stall" would describe the stall itself as well
+            raise UnresolvedError(f"Which other {described} do you mean? Please describe it.")
+        return f"{text[: match.start('pronoun')]}the {described}"
 
     def _with_owner(self, thing: ast.Thing) -> str:
         """Return the description of a part of an earlier thing: "its sign" becomes "sign of the post office"."""

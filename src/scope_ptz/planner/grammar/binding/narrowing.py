@@ -21,6 +21,10 @@ _VERBS = {
     "hold": "holding", "holds": "holding", "ride": "riding", "sit": "sitting", "stand": "standing", "walk": "walking",
     "say": "saying", "face": "facing",
 }  # fmt: skip
+_REGION_NOUN = re.compile(r"\b(?P<noun>half|quarter|third|corner|side|part|section)$", re.IGNORECASE)
+_REGION_WITHOUT_NOUN = re.compile(
+    r"(?:in the )?(?P<sides>(?:top|bottom|upper|lower|middle|centre|left|right)(?:[ -](?:left|right))?)(?: one)?", re.IGNORECASE
+)
 _WEARING = re.compile(r"\b(?:with|without|wearing|in) (?:the |an? )?(.+)$", re.IGNORECASE)
 _ITEM = re.compile(r"\b(?:wearing|with|without|carrying|holding) (?:an? |the )?((?:\w+ ){0,2}\w+)$", re.IGNORECASE)
 _CLOTHES = frozenset({"hat", "jacket", "vest", "clothes", "hard hat", "trousers", "dress", "skirt", "scarf", "shoes"})
@@ -54,6 +58,28 @@ def narrowed(description: str, predicate: str) -> str:
     if kind == "posture":
         words = [word for word in words if word.lower() not in _POSTURES] or words
     return " ".join([*words, *parts, modifier])
+
+
+def names_region(noun_phrase: str) -> bool:
+    """Return whether a noun phrase names a part of the picture: "left half", "bottom right quarter"."""
+    return _REGION_NOUN.search(noun_phrase) is not None and is_region(f"in the {noun_phrase}")
+
+
+def is_region(predicate: str) -> bool:
+    """Return whether a predicate only says in which part of the picture things are: "in the left half", "on the right"."""
+    return _kind(as_modifier(predicate)) == "place"
+
+
+def with_region_noun(predicate: str, description: str) -> str:
+    """Complete a predicate that leaves out the noun of a part of the picture.
+
+    After "people in the top left quarter", "in the bottom right one" means "in the bottom right quarter".
+    """
+    left_out = _REGION_WITHOUT_NOUN.fullmatch(predicate.strip())
+    region = _REGION_NOUN.search(description)
+    if left_out is None or region is None:
+        return predicate
+    return f"in the {left_out['sides']} {region['noun']}"
 
 
 def _is_adjective(text: str) -> bool:

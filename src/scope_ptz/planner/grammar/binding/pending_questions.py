@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from scope_ptz.planner.grammar import instruction_tree as ast
 from scope_ptz.planner.grammar.binding.focus import WHICH_ONE
+from scope_ptz.planner.grammar.binding.followups import followup_of
 from scope_ptz.planner.grammar.binding.question_pronouns import with_referents
 from scope_ptz.planner.grammar.parsing.instruction_parser import parse
 
@@ -21,7 +22,8 @@ def pending_step(conversation: Sequence[PastTurn], presets: tuple[str, ...]) -> 
     """Return the step that waits for the answer to "which of the 3 people do you mean?"; None if nothing waits."""
     if not conversation or conversation[-1].exchanges or not conversation[-1].reply.startswith(WHICH_ONE):
         return None
-    steps = parse(conversation[-1].instruction, presets).steps or ()
+    asked = conversation[-1].instruction
+    steps = parse(asked, presets).steps or followup_of(asked, presets) or ()
     return steps[0] if len(steps) == 1 and isinstance(steps[0], Pending) else None
 
 

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from typing import Literal
 
 from scope_ptz.planner.grammar.binding.embedded_questions import direct_question
+from scope_ptz.planner.grammar.binding.noun_heads import is_ranked
 from scope_ptz.planner.grammar.binding.preset_matching import match_exactly
 from scope_ptz.planner.grammar.lexing.lexer import lexemes_of
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match
@@ -28,9 +29,13 @@ _WINNER = re.compile(
     re.IGNORECASE,
 )
 _PREDICATE = re.compile(
-    r"how many (?:of (?:them|those|these) )?(?P<predicate>(?:(?:are|were|have|wear|carry|hold) |do(?: not|n['’]t) (?:have|wear) )"
+    r"how many (?:of (?:them|those|these) )?(?P<predicate>(?!in (?:view|sight|total|all)\b)"
+    r"(?:(?:are|were|have|wear|carry|hold|in|on|near|with|without|wearing|carrying) |do(?: not|n['’]t) (?:have|wear) )"
     r"(?!there\b|you\b|we\b|visible\b|in (?:view|sight|total|all)\b)[^?]+)\?*",
     re.IGNORECASE,
+)
+_SUPERLATIVE = re.compile(
+    r"(?:and )?which(?: of (?:them|those|these))?(?: is|['’]s) (?:the )?(?P<rank>[\w-]+)(?: one)?\?*", re.IGNORECASE
 )
 _WHICH_HAS = re.compile(_HAS_MORE, re.IGNORECASE)
 _ANY_THERE = re.compile(
@@ -63,6 +68,12 @@ def how_many_predicate(question: str) -> str:
     """Return "are sitting down" for "how many are sitting down?", which asks about the objects counted last; empty for others."""
     match = _PREDICATE.fullmatch(question.strip())
     return match["predicate"] if match else ""
+
+
+def bare_superlative(question: str) -> str:
+    """Return "farthest" for "which is farthest?", which asks about things named before; empty for other questions."""
+    match = _SUPERLATIVE.fullmatch(question.strip())
+    return match["rank"] if match is not None and is_ranked(f"{match['rank']} thing") else ""
 
 
 def is_request_to_describe(question: str) -> bool:

@@ -10,12 +10,14 @@ from scope_ptz.english import listing
 from scope_ptz.planner.grammar import instruction_tree as ast
 from scope_ptz.planner.grammar.binding.asked_things import asked_thing, with_other_thing
 from scope_ptz.planner.grammar.binding.commands import standing_command
-from scope_ptz.planner.grammar.binding.continuations import commands_of
+from scope_ptz.planner.grammar.binding.continuations import FILLS_THE_VIEW, commands_of
 from scope_ptz.planner.grammar.binding.earlier_comparison import counts_of_tour, earlier_winners, last_two_presets
 from scope_ptz.planner.grammar.binding.embedded_questions import direct_question
+from scope_ptz.planner.grammar.binding.focus import PLURAL, foci_of, latest_counts, like_to_know, which_one
 from scope_ptz.planner.grammar.binding.followups import is_adjective
 from scope_ptz.planner.grammar.binding.names import Names, UnresolvedError
-from scope_ptz.planner.grammar.binding.noun_heads import names_person, names_several
+from scope_ptz.planner.grammar.binding.narrowing import is_region, narrowed, with_region_noun
+from scope_ptz.planner.grammar.binding.noun_heads import head_noun, names_person, names_several
 from scope_ptz.planner.grammar.binding.offtopic import is_about_the_scene
 from scope_ptz.planner.grammar.binding.pending_questions import pending_step, with_thing
 from scope_ptz.planner.grammar.binding.plain_questions import plain_question
@@ -28,6 +30,7 @@ from scope_ptz.planner.grammar.binding.question_pronouns import (
 )
 from scope_ptz.planner.grammar.binding.question_text import (
     bare_comparison,
+    bare_superlative,
     how_many_predicate,
     is_about_the_future,
     is_answered_by_counts,
@@ -36,6 +39,7 @@ from scope_ptz.planner.grammar.binding.question_text import (
     two_questions,
     with_subject,
 )
+from scope_ptz.planner.grammar.execution.answer_sentences import noun
 
 _THE_THING_AND_IT = re.compile(r"\bthe \w+.*\b(it|they|them)\b")
 _RELATIVE_POSITION = re.compile(
@@ -61,6 +65,7 @@ _LOOKS = (
 """Steps that can find something, to which "if so" can refer."""
 
 
+_ONE = re.compile(r"\bone\b", re.IGNORECASE)
 _MOVES = (ast.Move, ast.Home, ast.GoToPreset, ast.GoThere, ast.Back, ast.ZoomTo, ast.Track, ast.AtPlaces, ast.Loop, ast.Repeat)
 
 
@@ -192,6 +197,11 @@ class Resolver(Names):
 
     def _total(self, step: ast.Total) -> Sequence[ast.Step]:
         self.has_counted = True
+        if not step.parts:
+            counted = latest_counts(self.conversation)
+            if len(counted) < 2:
+                raise UnresolvedError("What shall I add up? Please name the things to count.")
+            return [ast.Total(tuple(ast.Tally(ast.Thing(description), None, self._view(None)) for description in counted))]
         return [ast.Total(self._tallies(step.parts))]
 
     def _difference(self, step: ast.Difference) -> Sequence[ast.Step]:
@@ -205,7 +215,7 @@ class Resolver(Names):
     def _ask(self, step: ast.Ask) -> Sequence[ast.Step]:
         if self.has_counted and is_answered_by_counts(step.question):
             return []
-        if self.conversation and self.topic and (predicate := how_many_predicate(step.question)):
+        if self.topic and (predicate := how_many_predicate(step.question)):
             return self._count(ast.Count((ast.Thing(pronoun="them", predicate=predicate),), step.view))
         if comparison := bare_comparison(step.question):
             return self._bind(self._earlier_comparison(comparison))
@@ -230,8 +240,21 @@ class Resolver(Names):
 
         After a thing has been named in the same instruction, a question that names another one keeps its pronoun.
         """
+        if (rank := bare_superlative(question)) and (group := self._group()):
+            return f"which {noun(group, 1)} is {rank}?"
         question = with_noun_for_one(without_anticipation(with_subject(question)), self._referent_of_ones)
-        return question if self.antecedent and _THE_THING_AND_IT.search(question) else with_referents(question, self.referent)
+        return (
+            question
+            if self.antecedent and _THE_THING_AND_IT.search(question)
+            else with_referents(question, self.referent_in_question)
+        )
+
+    def _group(self) -> str:
+        """Return the description of the things that were named last, if they may be several; otherwise nothing."""
+        if self.antecedent or not self.foci:
+            return self.antecedent if names_several(self.antecedent) else ""
+        last = self.foci[-1]
+        return last.description if names_several(last.description) else ""
 
     def _referent_of_ones(self, pronoun: str) -> str:  # noqa: ARG002 - has the signature of a referent
         return self.topic
@@ -270,7 +293,7 @@ class Resolver(Names):
 
     def _zoomto(self, step: ast.ZoomTo) -> Sequence[ast.Step]:
         if re.search(r"\b\d[\d.]* ?(?:x|times|%|percent)$", step.thing.text):
-            raise UnresolvedError("A thing I zoom in on fills the view. Shall I do that, or zoom where I look now?")
+            raise UnresolvedError(FILLS_THE_VIEW)
         if re.match(
             r"(?:preset|saved view|stored view|saved position|stored position|bookmark)s?\b", step.thing.text, re.IGNORECASE
         ):
@@ -278,7 +301,21 @@ class Resolver(Names):
             raise UnresolvedError(f"I do not know that preset. Presets: {known}. Which one do you mean?")
         if relative := _RELATIVE_POSITION.match(step.thing.text):
             raise UnresolvedError(f"I can centre on a thing, not on what is {relative[1]} it. By how many degrees shall I move?")
+        if step.thing.pronoun in {"one", "both"} and self.topic:
+            return [ast.ZoomTo(ast.Thing(self._only_one(), definite=True))]
         return [ast.ZoomTo(self.thing(step.thing))]
+
+    def _only_one(self) -> str:
+        """Return the description of the thing that was named last, of which there is a single one.
+
+        Raises:
+            UnresolvedError: There are several, of which the camera can show only one.
+        """
+        last = self.foci[-1] if self.foci else None
+        if last is None or self.antecedent or last.is_several:
+            raise UnresolvedError(which_one(last) if last is not None else f"Which {noun(self.topic, 1)} do you mean?")
+        self.antecedent = last.one
+        return last.one
 
     def _track(self, step: ast.Track) -> Sequence[ast.Step]:
         return [replace(step, thing=self.thing(step.thing))]
@@ -287,11 +324,19 @@ class Resolver(Names):
         if step.thing.text and self.presets and (name := match_preset(step.thing.text, self.presets)):
             return [ast.GoToPreset(ast.PresetRef(name, explicit=True)), *self._last_question()]
         pending, topic = pending_step(self.conversation, self.presets or ()), self.topic
+        if self.foci and self._is_region_without_noun(step.thing):
+            step = ast.WhatAbout(ast.Thing(predicate=step.thing.text))
+        if step.thing.predicate and (counted := self._count_before_moves(step.thing.predicate)):
+            return self._count(ast.Count((ast.Thing(narrowed(counted, step.thing.predicate)),)))
         thing = self.thing(self._with_noun_if_bare(step.thing))
         if not self.conversation:
             return self._count(ast.Count((thing,)))
+        if isinstance(pending, ast.ZoomTo) and step.thing.pronoun in PLURAL:
+            raise UnresolvedError(which_one(self.foci[-1]) if self.foci else "Which one do you mean? Please describe it.")
         if pending is not None:
             return self._bind(with_thing(pending, thing.text))
+        if self.foci and self.foci[-1].look in {"count_objects", "named"} and _ONE.search(step.thing.text):
+            raise UnresolvedError(like_to_know(thing.text))  # a count says nothing about one thing
         if step.thing.pronoun == "both" and self.foci and self.foci[-1].look in {"count_objects", "query_answer"}:
             raise UnresolvedError(f"What shall I do with the {thing.text}?")
         return [self._last_look_at(thing, topic)]
@@ -303,6 +348,25 @@ class Resolver(Names):
         if not thing.definite:
             return ast.Thing(predicate=thing.text)  # "and blue?"
         return replace(thing, text=f"{thing.text} one")
+
+    def _count_before_moves(self, predicate: str) -> str:
+        """Return the description of the last count, to which "and in the left half?" refers once the camera has been moved.
+
+        Directly after a question, it repeats the question for a part of the picture. Later on, a question that was asked between
+        the count and the move is no longer meant. The description is empty if there is no such count.
+        """
+        has_moved = bool(self.conversation) and not foci_of(self.conversation[-1:])
+        if not has_moved or not is_region(predicate) or not self.foci or self.foci[-1].look != "query_answer":
+            return ""
+        counts = (focus for focus in reversed(self.foci) if focus.look == "count_objects")
+        counted = next(counts, None)
+        same = counted is not None and noun(head_noun(counted.description), 1) == noun(head_noun(self.foci[-1].description), 1)
+        return counted.description if counted is not None and same else ""
+
+    def _is_region_without_noun(self, thing: ast.Thing) -> bool:
+        """Return whether "the bottom right one" is a part of the picture, because the last look was at such a part."""
+        description = self.foci[-1].description
+        return bool(thing.text) and with_region_noun(thing.text, description) != thing.text
 
     def _last_look_at(self, thing: ast.Thing, topic: str) -> ast.Step:
         """Return the last count, question, close-up or pursuit, of another thing.

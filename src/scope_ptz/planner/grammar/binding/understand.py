@@ -11,7 +11,7 @@ from scope_ptz.english.grammar.numbers import NUMBER_WORDS
 from scope_ptz.planner.grammar import instruction_tree as ast
 from scope_ptz.planner.grammar.answerable import answerable_questions, is_whole_question
 from scope_ptz.planner.grammar.binding.continuations import NOTHING_DONE, continuation_of
-from scope_ptz.planner.grammar.binding.followups import followup_of
+from scope_ptz.planner.grammar.binding.followups import followup_of, question_about_topic
 from scope_ptz.planner.grammar.binding.names import UnresolvedError
 from scope_ptz.planner.grammar.binding.offtopic import REFUSAL, is_harmful
 from scope_ptz.planner.grammar.binding.resolver import Resolver
@@ -87,7 +87,7 @@ def _read(said: str, preset_names: tuple[str, ...] | None, conversation: Sequenc
     """Return the steps of a text, or a clarifying question."""
     parsed = parse(said, preset_names or ())
     try:
-        steps = parsed.steps
+        steps = question_about_topic(said, preset_names or ()) or parsed.steps
         if steps is None and conversation:
             steps = followup_of(said, preset_names or ())
         if steps is None:

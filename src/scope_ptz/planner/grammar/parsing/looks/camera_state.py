@@ -31,7 +31,8 @@ _START = (
 
 _AFTER_START = "(from|with|at|on|in|out|off|GLUE|FILLER|AGAINWORD|NOW)*"
 _SEVERAL_BACK = (
-    "(FILLER)* UNDO (DET|last|previous)* (?P<number>NUM) (moves|MOVES|TRIES|TURNNOUN|STEPNOUN|steps|commands|things) (FILLER)*"
+    "(FILLER)* UNDO (DET|last|previous)* ((?P<number>NUM)|(?P<both>both)) "
+    "((of)? (them|those|these|DET)* (moves|MOVES|TRIES|TURNNOUN|STEPNOUN|steps|commands|things)?) (FILLER)*"
 )
 
 
@@ -44,7 +45,7 @@ def state_step(lexemes: Sequence[Lexeme]) -> Step | None:
     if full_match(f"{_LEADS_BACK} ({_START}) {_AFTER_START}|UNDO (WHOLETHING|all of (it|that)) (FILLER)*", lexemes):
         return Back(to_start=True)
     if (several := full_match(_SEVERAL_BACK, lexemes)) is not None:
-        return Repeat((Back(),), max(1, round(several["number"][0].value)))
+        return Repeat((Back(),), 2 if several.has("both") else max(1, round(several["number"][0].value)))
     if full_match("(TURN|TURN-ING|CARRY) (your|my|its|his|her|their) BACK _*", lexemes):
         return Unclear("Which way shall I turn, and how far?")  # "turn your back to us"
     if full_match(

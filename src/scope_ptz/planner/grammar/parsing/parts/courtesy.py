@@ -64,10 +64,15 @@ def is_polite(lexemes: Sequence[Lexeme]) -> bool:
         x.has(*_COMMANDS, *DIRECTIONS, "IN", "OUT", "NUM", "HOME", "PRESET", "AFTER", "BEFORE") for x in lexemes
     ):
         return False
+    if match_start(_WITH_OBJECT, lexemes):
+        return False
     words = {part for x in lexemes for part in (x.word, *x.word.split("_"))}
     is_function = all(x.word in _COURTEOUS or x.has(*_FUNCTION_CLASSES) or x.word in _EMPTY for x in lexemes)
     return is_function and bool(_COURTEOUS & words or full_match(_BRIEF, lexemes))
 
+
+_WITH_OBJECT = "(in|on|onto|upon|at|to|into|towards|over)+ (all|both|each|of)* PRON"
+"""The object of a command such as "zoom in on him please", which courtesy must not swallow."""
 
 _BRIEF = "(FILLER|COMMA)* (if)? SELF (may|MODAL) (FILLER)*|like DET good (FREE)|in fact|eh"
 """Polite and empty phrases without a word of courtesy: "if I may", "like a good man"."""
