@@ -130,6 +130,26 @@ def test_red_clothes_are_not_a_red_umbrella() -> None:
     assert len(detect(*STREET, "person with a red umbrella").boxes) == 1
 
 
+def test_a_description_begins_with_the_people_that_a_count_finds() -> None:
+    place = ("station-square", "square")
+    number = len(detect(*place, "people").boxes)
+    text = ask(*place, "what can you see?").text
+    assert text.startswith(f"I can see {number} people, ")
+    assert ", among other things" in text
+
+
+@pytest.mark.parametrize(
+    ("place", "question", "expected"),
+    [
+        (("freight-yard", "car-park"), "is the car park full?", "No, only 10 of the 17 parking spaces are full."),
+        (DOCKS, "is a person driving the taxi?", "There is no taxi in view."),
+        (DOCKS, "who is driving the taxi?", "There is no taxi in view."),
+    ],
+)
+def test_answers_judge_wholes_by_their_parts_and_name_what_is_absent(place: tuple[str, str], question: str, expected: str) -> None:
+    assert ask(*place, question).text == expected
+
+
 def test_the_signs_include_the_lettering_on_buildings() -> None:
     text = ask("freight-yard", "car-park", "what do the signs say?").text
     assert text.startswith('I can read 2 of the 20 signs in view: "1" and "35". The other 18 are too small to read from here.')

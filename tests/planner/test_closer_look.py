@@ -48,6 +48,13 @@ def test_only_perception_knows_how_many_signs_are_legible() -> None:
     assert stage.calls == [("query_answer", {"question": "How many signs can you read?", "view": "current"})]
 
 
+def test_what_a_thing_lacks_is_no_second_thing() -> None:
+    stage = Stage([True, True])
+    finish = stage.run("zoom in on the man in the vest and no helmet")
+    assert (stage.calls, finish.kind) == ([], "clarification")
+    assert 'I did not understand "no helmet".' in finish.text
+
+
 def test_the_nearest_sign_is_read() -> None:
     stage = Stage([READ])
     stage.run("read the nearest sign")

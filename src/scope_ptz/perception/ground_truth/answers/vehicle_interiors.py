@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from scope_ptz import english
+from scope_ptz.english.grammar.lexicon import lexicon
 from scope_ptz.english.grammar.questions import question_tree as tree
 from scope_ptz.english.grammar.questions.ambiguity import is_person
-from scope_ptz.perception.ground_truth.answers.restating import definite_as_asked
+from scope_ptz.perception.ground_truth.answers.restating import definite_as_asked, none_in_view
 from scope_ptz.perception.ground_truth.answers.thing_names import (
     TruthAnswer,
     coloured_name,
@@ -29,8 +30,16 @@ def asked_vehicle(view: View, description: tree.Description) -> tree.Description
     inside = [
         t.other for t in phrase.tests if isinstance(t, tree.Relation) and t.kind == "on" and t.preposition in {*INSIDE, "of", ""}
     ]
+    if driven is not None and names_vehicle(driven):
+        return driven  # if it is not in view, the answer says so
     candidates = [driven] if driven is not None else inside
     return next((c for c in candidates if _vehicles(view, c) or c.phrases[0].words == ("it",)), None)
+
+
+def names_vehicle(description: tree.Description) -> bool:
+    """Return whether the noun of a description is a vehicle or a machine, in view or not."""
+    concept = lexicon().concept(description.phrases[0].words[-1])
+    return concept is not None and bool(lexicon().kinds(concept) & {"vehicle", "machine"})
 
 
 def driven_vehicle(phrase: tree.Phrase) -> tree.Description | None:
@@ -43,6 +52,8 @@ def driven_vehicle(phrase: tree.Phrase) -> tree.Description | None:
 def answer_about_occupants(view: View, vehicle: tree.Description) -> TruthAnswer:
     """Answer who is in a vehicle: the people whom the scene models in it, or that this cannot be seen."""
     vehicles = _vehicles(view, vehicle)
+    if not vehicles and names_vehicle(vehicle):
+        return known_answer(none_in_view(view, vehicle))
     occupants = [t for t in view.things if t.parent in {v.id for v in vehicles} and "person" in t.concepts]
     if occupants:
         return known_answer(f"yes, there is {english.article(coloured_name(occupants[0]))} {position_words(occupants[0])}")

@@ -78,8 +78,18 @@ def asked_thing(question: str) -> AskedThing | None:
     return None
 
 
+_NUMBERED = re.compile(r"(?P<kind>[a-z][a-z -]*) \d+", re.IGNORECASE)
+
+
 def with_other_thing(question: str, description: str) -> str | None:
-    """Return the same question about another thing: "what colour is the green lorry?"; None if it asks about no thing."""
+    """Return the same question about another thing: "what colour is the green lorry?"; None if it asks about no thing.
+
+    Another number replaces that of the same kind: with "dock 6", "is there a lorry at dock 5?" asks about a lorry at dock 6.
+    """
+    if (numbered := _NUMBERED.fullmatch(description)) is not None:
+        same_kind = re.compile(rf"\b{re.escape(numbered['kind'])} \d+\b", re.IGNORECASE)
+        if len(same_kind.findall(question)) == 1:
+            return same_kind.sub(description, question)
     thing = asked_thing(question)
     if thing is None or thing.end <= thing.start:
         return None

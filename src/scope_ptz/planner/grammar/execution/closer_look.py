@@ -81,8 +81,8 @@ class CloserLook(RunState):
     ) -> CallGenerator:
         """Zoom in on a thing, ask a question about it, and put the camera back. Return the result, or ``before`` if there is none.
 
-        If a part cannot be found ("licence plate of the van"), the camera zooms in on the whole. With ``of_several``, the thing is the
-        one with the largest text of several things that the user wants to have read.
+        If a part cannot be found ("licence plate of the van"), the camera zooms in on the whole.
+        With ``of_several``, the user wants to have several things read, and the thing is the one with the largest text.
         """
         start, found = self.pose, False
         for target in dict.fromkeys((thing, _whole_of(thing))):
