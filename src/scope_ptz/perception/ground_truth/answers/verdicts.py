@@ -101,7 +101,10 @@ def _parts_of_whole(subject: tree.Description) -> tree.Description | None:
     return tree.Description((replace(phrase, words=(*phrase.words[:-2], *_WHOLES[phrase.words[-2:]])),))
 
 
-_WHOLES = {("car", "park"): ("parking", "spaces"), ("parking", "lot"): ("parking", "spaces")}
+_WHOLES: dict[tuple[str, ...], tuple[str, ...]] = {
+    ("car", "park"): ("parking", "spaces"),
+    ("parking", "lot"): ("parking", "spaces"),
+}
 """Wholes that scenes model only by their parts, with the parts."""
 
 
