@@ -130,6 +130,52 @@ def test_red_clothes_are_not_a_red_umbrella() -> None:
     assert len(detect(*STREET, "person with a red umbrella").boxes) == 1
 
 
+def test_a_description_begins_with_the_people_that_a_count_finds() -> None:
+    place = ("station-square", "square")
+    number = len(detect(*place, "people").boxes)
+    text = ask(*place, "what can you see?").text
+    assert text.startswith(f"I can see {number} people, ")
+    assert ", among other things" in text
+
+
+@pytest.mark.parametrize(
+    ("place", "question", "expected"),
+    [
+        (("freight-yard", "car-park"), "is the car park full?", "No, only 10 of the 17 parking spaces are full."),
+        (DOCKS, "is a person driving the taxi?", "There is no taxi in view."),
+        (DOCKS, "who is driving the taxi?", "There is no taxi in view."),
+    ],
+)
+def test_answers_judge_wholes_by_their_parts_and_name_what_is_absent(place: tuple[str, str], question: str, expected: str) -> None:
+    assert ask(*place, question).text == expected
+
+
+def test_the_signs_include_the_lettering_on_buildings() -> None:
+    text = ask("freight-yard", "car-park", "what do the signs say?").text
+    assert text.startswith('I can read 2 of the 20 signs in view: "1" and "35". The other 18 are too small to read from here.')
+    assert text.endswith('I can also read "ARKWRIGHT TIMBER" on the green industrial shed.')
+
+
+def test_the_largest_of_several_illegible_signs_is_named() -> None:
+    reply = ask(*GATEHOUSE, "what do the signs say?")
+    assert not reply.known
+    assert reply.text == (
+        "There is text on the signs, but it is too small to read; the largest that faces the camera is on the thank you sign."
+    )
+
+
+def test_a_sign_that_is_not_the_only_one_is_not_read_as_one() -> None:
+    text = ask(*DOCKS, "what does the sign on the left say?").text
+    assert " signs on the left in view: " in text
+
+
+def test_a_price_may_be_on_a_menu_that_is_too_small() -> None:
+    reply = ask("station-square", "terrace", "how much is the omelette?")
+    assert (reply.text, reply.known) == (
+        "The price of the omelette may be on the chalk menu board, but it is too small to read.", False
+    )  # fmt: skip
+
+
 def test_a_text_is_located_although_it_is_no_thing_of_its_own() -> None:
     (plate,) = detect(*TAXIS, "number plate of the silver taxi").boxes
     (taxi,) = detect(*TAXIS, "silver taxi").boxes

@@ -30,6 +30,37 @@ def test_it_zooms_in_looks_again_and_puts_the_camera_back() -> None:
     )
 
 
+def test_of_several_signs_it_goes_closer_to_the_one_with_the_largest_text() -> None:
+    several = {
+        "answer": "There is text on the signs, but it is too small to read; the largest that faces the camera is on the exit sign.",
+        "known": False,
+    }
+    stage = Stage([several, True, READ], lands=CLOSE, simulated=True)
+    finish = stage.run("read all the signs please")
+    assert stage.calls[1] == ("zoom_to_object", {"description": "exit sign"})
+    assert stage.calls[2][1]["question"] == "What does the exit sign say?"
+    assert finish.text.startswith("I zoomed in on the exit sign only, which has the largest text, and put the camera back")
+
+
+def test_only_perception_knows_how_many_signs_are_legible() -> None:
+    stage = Stage([{"answer": "2 signs bear text that I can read.", "known": True}])
+    stage.run("how many signs can you read from here?")
+    assert stage.calls == [("query_answer", {"question": "How many signs can you read?", "view": "current"})]
+
+
+def test_what_a_thing_lacks_is_no_second_thing() -> None:
+    stage = Stage([True, True])
+    finish = stage.run("zoom in on the man in the vest and no helmet")
+    assert (stage.calls, finish.kind) == ([], "clarification")
+    assert 'I did not understand "no helmet".' in finish.text
+
+
+def test_the_nearest_sign_is_read() -> None:
+    stage = Stage([READ])
+    stage.run("read the nearest sign")
+    assert stage.calls == [("query_answer", {"question": "What does the nearest sign say?", "view": "current"})]
+
+
 def test_from_close_up_it_asks_without_the_position() -> None:
     stage = Stage([SMALL, True, READ], lands=CLOSE, simulated=True)
     stage.run("what does the sign at the bottom say?")

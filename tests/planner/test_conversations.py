@@ -41,6 +41,16 @@ def test_a_turn_continues_the_last_move(instructions: tuple[str, ...], arguments
     assert calls == [("adjust_ptz", arguments)]
 
 
+def test_another_number_asks_about_the_same_thing_there() -> None:
+    calls, _ = last_calls("is there a lorry at dock 5?", "what about dock 6?", looks=(YES, YES))
+    assert calls == [("query_answer", {"question": "is there a lorry at dock 6?", "view": "current"})]
+
+
+def test_ones_of_two_colours_are_the_things_spoken_of() -> None:
+    calls, _ = last_calls("how many containers are there?", "are there more blue than red ones?", looks=(5, 3, 2))
+    assert [arguments["description"] for _, arguments in calls] == ["blue containers", "red containers"]
+
+
 @pytest.mark.parametrize("before", ["go to the gate", "count the cones", "pan left 20 and tilt up 5"])
 def test_more_of_nothing_is_asked_about(before: str) -> None:
     calls, reply = last_calls(before, "a bit more")

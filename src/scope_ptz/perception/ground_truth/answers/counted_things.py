@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from scope_ptz import english
+from scope_ptz.english.grammar.lexicon import lexicon
 from scope_ptz.english.grammar.questions import question_tree as tree
 from scope_ptz.perception.ground_truth.answers.restating import (
     definite_as_asked,
@@ -89,16 +90,24 @@ def _owner_of_part(view: View, what: tree.Description) -> Thing | None:
 def describe_matches(view: View, what: tree.Description, matches: list[Thing]) -> str:
     """Describe the matching things: "there are 2 cars: a red car on the left and a white car in the middle"."""
     are_wearers = not find_excluding_wearers(view, what)
+    on = "with" if are_wearers and _is_animal(what) else "on"
     if len(matches) == 1:
         return (
-            f"there is {english.article(noun_phrase(view, what))} on {names_with_positions(matches)}"
+            f"there is {english.article(noun_phrase(view, what))} {on} {names_with_positions(matches)}"
             if are_wearers
             else f"there is {names_with_positions(matches)}"
         )
     statement = f"there are {len(matches)} {noun_phrase(view, what, plural=True)}"
     return (
-        f"{statement}{', on' if are_wearers else ':'} {names_with_positions(matches)}" if len(matches) <= MAX_LISTED else statement
+        f"{statement}{f', {on}' if are_wearers else ':'} {names_with_positions(matches)}"
+        if len(matches) <= MAX_LISTED
+        else statement
     )
+
+
+def _is_animal(what: tree.Description) -> bool:
+    concept = lexicon().concept(what.phrases[0].words[-1])
+    return concept is not None and "animal" in lexicon().kinds(concept)
 
 
 def answer_count(view: View, question: tree.Count) -> TruthAnswer:

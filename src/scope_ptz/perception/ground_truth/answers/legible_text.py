@@ -15,7 +15,7 @@ from scope_ptz.perception.ground_truth.answers.text_blocks import TextBlock, blo
 from scope_ptz.perception.ground_truth.answers.thing_names import TruthAnswer, known_answer, position_words, unknown_answer
 from scope_ptz.perception.ground_truth.thing_search import find
 from scope_ptz.perception.ground_truth.view import Thing, View, concepts_of
-from scope_ptz.simulator.truth import MAX_READING_ANGLE_DEG, MIN_CAP_HEIGHT_PX, TextSighting
+from scope_ptz.simulator.truth import MAX_READING_ANGLE_DEG, MIN_CAP_HEIGHT_PX, MIN_UNHIDDEN_FRACTION, TextSighting
 
 
 def answer_read(view: View, question: tree.Read) -> TruthAnswer:
@@ -30,7 +30,39 @@ def answer_read(view: View, question: tree.Read) -> TruthAnswer:
     if not things:
         return unknown_answer(f"I cannot tell: {none_in_view(view, question.what)}")
     texts = _texts_on(view, things, question.plate)
+    if _is_any_sign(question.what) and (lettering := _legible_lettering(view, texts)):
+        return _quote_signs_and_lettering(view, question.what, texts, lettering)
     return _quote_texts(view, question.what, texts, question.plate)
+
+
+def _is_any_sign(what: tree.Description) -> bool:
+    """Return whether a description names all signs, without saying which: "the signs"."""
+    return what == tree.Description((tree.Phrase(("signs",), article=what.phrases[0].article),))
+
+
+def _legible_lettering(view: View, on_signs: Sequence[TextSighting]) -> list[TextSighting]:
+    """Return the legible texts on the walls of buildings, which people call signs although they are no things of their own."""
+    return [t for t in view.texts if t.legible and t not in on_signs and "building" in concepts_of(view.instances[t.text.parent])]
+
+
+def _quote_signs_and_lettering(
+    view: View, what: tree.Description, texts: Sequence[TextSighting], lettering: Sequence[TextSighting]
+) -> TruthAnswer:
+    """Answer with all signs that can be read, and with the lettering on buildings. The camera needs no closer view for that."""
+    buildings = [f"the {name}" for name in dict.fromkeys(view.instances[t.text.parent].name for t in lettering)]
+    on_buildings = f"{english.listing(quotes(lettering))} on {english.listing(buildings)}"
+    if any(t.legible for t in texts):
+        signs = _quote_texts(view, what, texts, plate=False)
+        separator = "\n" if "\n" in signs.text else " "
+        return known_answer(f"{signs.text.rstrip('.')}.{separator}I can also read {on_buildings}")
+    unread = _illegible_things(view, texts)
+    if not unread:
+        return known_answer(f"I can read {on_buildings}")
+    reason = english.listing(_reasons_against(texts, unread), "or")
+    if len(unread) == 1:
+        return known_answer(f"I can read {on_buildings}. The only {noun_phrase(view, what)} in view is {reason} to read from here")
+    signs_in_view = f"{len(unread)} {noun_phrase(view, what, plural=True)} in view"
+    return known_answer(f"I can read {on_buildings}. The {signs_in_view} are {reason} to read from here")
 
 
 def _texts_on(view: View, things: Sequence[Thing], plate: bool) -> list[TextSighting]:
@@ -67,17 +99,34 @@ def _quote_texts(view: View, what: tree.Description | None, texts: Sequence[Text
     if not any(t.legible for t in texts):
         if not (texts or plate) and what and (clocks := [t for t in find(view, what) if "clock" in t.concepts]):
             return _answer_clock_time(clocks)
+        if what and is_plural(what) and not plate and (best := _best_to_go_closer_to(view, texts)) is not None:
+            return unknown_answer(
+                f"there is text on {subject}, but {illegibility(texts)} to read; the largest that faces the camera is on the {best}"
+            )
         return _nothing_legible(subject if what else "", texts, plate)
     if plate:
         return TruthAnswer(english.sentence(f"the number plate reads {english.listing(quotes(texts))}"))
     readers = _things_with_text(texts, legible=True)
     if what is None:
         return known_answer(f"I can read {english.listing(quotes(texts))}{_unread_rest(view, texts)}")
-    if is_plural(what) and (unread := _illegible_things(view, texts)):
+    if (is_plural(what) or len(readers) > 1) and (unread := _illegible_things(view, texts)):
         share = f"{len(readers)} of the {len(readers) + len(unread)} {noun_phrase(view, what, plural=True)} in view"
         return known_answer(f"I can read {share}:{_quoted(view, texts, readers)}{_unread_things(texts, unread)}")
     verb = "read" if is_plural(what) else "reads"
     return known_answer(f"{_quoted(view, texts, readers, f'{subject} {verb}')}{_unread_rest(view, texts)}")
+
+
+def _best_to_go_closer_to(view: View, texts: Sequence[TextSighting]) -> str | None:
+    """Return the name of the thing with the largest text that is only too small; None if there is none, or only one thing."""
+    small = [t for t in texts if is_only_too_small(t)]
+    things = [view.by_id[t.text.parent] for t in sorted(small, key=lambda t: -t.cap_height_px) if t.text.parent in view.by_id]
+    return things[0].name if things and len(_things_with_text(texts, legible=False)) > 1 else None
+
+
+def is_only_too_small(text: TextSighting) -> bool:
+    """Return whether a text cannot be read, but could be from close up."""
+    is_in_sight = text.angle_deg <= MAX_READING_ANGLE_DEG and text.unhidden_fraction >= MIN_UNHIDDEN_FRACTION
+    return is_in_sight and text.cap_height_px < MIN_CAP_HEIGHT_PX
 
 
 def _nothing_legible(subject: str, texts: Sequence[TextSighting], plate: bool) -> TruthAnswer:
@@ -128,8 +177,12 @@ def _illegible_things(view: View, texts: Sequence[TextSighting]) -> list[str]:
 def _unread_things(texts: Sequence[TextSighting], unread: Sequence[str]) -> str:
     """Return the sentence about the things on which no text is legible, with all the reasons."""
     rest = "The other one is" if len(unread) == 1 else f"The other {len(unread)} are"
-    reasons = dict.fromkeys(_REASONS[_problem(t)] for t in texts if t.text.parent in unread)
-    return f". {rest} {english.listing(list(reasons), 'or')} to read from here"
+    return f". {rest} {english.listing(_reasons_against(texts, unread), 'or')} to read from here"
+
+
+def _reasons_against(texts: Sequence[TextSighting], unread: Sequence[str]) -> list[str]:
+    """Return all reasons why the texts on some things cannot be read: "too small", "seen too much from the side"."""
+    return list(dict.fromkeys(_REASONS[_problem(t)] for t in texts if t.text.parent in unread))
 
 
 def _unread_rest(view: View, texts: Sequence[TextSighting]) -> str:

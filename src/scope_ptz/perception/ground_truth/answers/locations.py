@@ -151,7 +151,7 @@ def _answer_no_match(view: View, question: tree.What, description: tree.Descript
         places = [t.other for t in question.tests if isinstance(t, tree.Relation) and not find(view, t.other)]
         if places and nouns_in(places[0].phrases[0].words, view.nouns):
             return answer_absent(view, places[0])
-        return known_answer(f"I can see nothing {english.listing([words_after_noun(view, t) for t in question.tests])}")
+        return known_answer(f"I can see nothing {' '.join(words_after_noun(view, t) for t in question.tests)}")
     if (vehicle := asked_vehicle(view, description)) is not None:
         return answer_about_occupants(view, description, vehicle, is_yes_no=False)
     if reason := undecided_reason(view, description):

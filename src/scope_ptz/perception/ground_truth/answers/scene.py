@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 
 from scope_ptz import english
 from scope_ptz.english.grammar.questions import question_tree as tree
@@ -35,17 +36,22 @@ NON_ACTIVITIES = frozenset({None, "parked", "open", "closed", "lit", "unlit", "s
 
 
 def answer_describe(view: View, question: tree.Describe) -> TruthAnswer:
-    """Describe the view, largest things first, with the legible texts."""
+    """Describe the view, people first and then the largest things, with the legible texts."""
     if question.what is not None:
         return _describe_things(view, question.what, question.tests)
     if question.tests:
         return _answer_load(view, question.tests) or answer_what(
             view, tree.What(tree.Description((tree.Phrase(("thing",)),)), question.tests)
         )
-    groups = _group_things(t for t in view.top_level() if not t.concepts & BACKGROUND_CONCEPTS)
-    if not groups:
+    people = find(view, tree.Description((tree.Phrase(("people",)),)))
+    others = [t for t in view.top_level() if t not in people and not t.concepts & BACKGROUND_CONCEPTS]
+    groups = _group_things(others)
+    if not (people or groups):
         return known_answer("I can see nothing that stands out")
-    parts = english.listing(groups[:MAX_GROUPS])
+    shown = _most_important(groups, MAX_GROUPS - bool(people))
+    parts = english.listing([*_people_words(people), *(group.words for group in shown)])
+    if len(shown) < len(groups):
+        parts += ", among other things"
     texts = quotes(view.texts)[:MAX_TEXTS]
     readable = f". I can read {english.listing(texts)}" if texts else ""
     return known_answer(f"I can see {parts}{readable}")
@@ -84,22 +90,47 @@ def _thing_details(thing: Thing) -> str:
     return "; ".join([location, *([", ".join(details)] if details else []), *texts])
 
 
-def _group_things(things: Iterable[Thing]) -> list[str]:
+def _people_words(people: Sequence[Thing]) -> list[str]:
+    """Return the people in view as one group: "16 people". A count of people has the same number."""
+    if len(people) == 1:
+        return [f"{english.article(coloured_name(people[0]))} {position_words(people[0])}"]
+    return [f"{len(people)} people"] if people else []
+
+
+@dataclass(frozen=True, slots=True)
+class _Group:
+    """Things of one kind in words, and whether they are animals or vehicles, which no description leaves out."""
+
+    words: str
+    is_mobile: bool
+
+
+def _most_important(groups: Sequence[_Group], number: int) -> list[_Group]:
+    """Return at most ``number`` groups in their order: all animals and vehicles, and then the largest others."""
+    kept = sorted(range(len(groups)), key=lambda i: (not groups[i].is_mobile, i))[:number]
+    return [groups[i] for i in sorted(kept)]
+
+
+_MOBILE = frozenset({"animal", "vehicle"})
+
+
+def _group_things(things: Iterable[Thing]) -> list[_Group]:
     """Return groups of things, largest on screen first: "3 cars (2 white, 1 red)"."""
     by_kind: dict[str, list[Thing]] = {}
     for thing in sorted(things, key=lambda t: -t.sighting.pixels):
         by_kind.setdefault(thing.category, []).append(thing)
     parts = []
     for kind, members in by_kind.items():
+        is_mobile = any(t.concepts & _MOBILE for t in members)
         if len(members) == 1:
-            parts.append(f"{english.article(coloured_name(members[0]))} {position_words(members[0])}")
+            parts.append(_Group(f"{english.article(coloured_name(members[0]))} {position_words(members[0])}", is_mobile))
             continue
         colours = Counter(c for c in map(colour_of, members) if c)
         if list(colours.values()) == [len(members)]:
-            parts.append(f"{len(members)} {next(iter(colours))} {english.plural(kind)}")
+            parts.append(_Group(f"{len(members)} {next(iter(colours))} {english.plural(kind)}", is_mobile))
             continue
         shown = f" ({english.listing([f'{n} {c}' for c, n in colours.most_common()])})" if colours and len(colours) <= 4 else ""
-        parts.append(f"{english.counted(len(members), kind)}{shown}")
+        parts.append(_Group(f"{english.counted(len(members), kind)}{shown}", is_mobile))
     return parts
 
 

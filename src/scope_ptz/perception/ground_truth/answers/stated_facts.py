@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 from scope_ptz import english
 from scope_ptz.english.grammar.questions import question_tree as tree
-from scope_ptz.perception.ground_truth.answers.legible_text import illegibility
+from scope_ptz.perception.ground_truth.answers.legible_text import illegibility, is_only_too_small
 from scope_ptz.perception.ground_truth.answers.restating import phrase_as_asked
 from scope_ptz.perception.ground_truth.answers.thing_names import TruthAnswer, known_answer, unknown_answer
 from scope_ptz.perception.ground_truth.thing_facts import FILLER_WORDS
@@ -73,9 +73,25 @@ def answer_price(view: View, question: tree.Price) -> TruthAnswer:
         labels = {label for label, _ in prices}
         listed = [f"{price} for {label}" if len(labels) > 1 and label else price for label, price in prices]
         return known_answer(f"there are {len(prices)} prices for {named}: {english.listing(listed)}")
+    if not groups and (price_list := _illegible_price_list(candidates)) is not None:
+        return unknown_answer(f"the price of {named} may be on the {price_list}, but it is too small to read")
     return _illegible_answer(groups, f"the price of {named}") or unknown_answer(
         f"I cannot tell: nothing that I can read in view states the price of {named}"
     )
+
+
+def _illegible_price_list(groups: Sequence[_ThingTexts]) -> str | None:
+    """Return the name of the largest list of prices of which the text is only too small; None if there is none."""
+    lists = [
+        (max(t.cap_height_px for t in group.texts), group.name)
+        for group in groups
+        if _words(group.name) & _PRICE_LISTS and all(is_only_too_small(t) for t in group.texts)
+    ]
+    return max(lists)[1] if lists else None
+
+
+_PRICE_LISTS = frozenset({"menu", "tariff"})
+"""Words in the names of things that list the prices of several goods. A price card has the price of one."""
 
 
 def _prices_on(group: _ThingTexts, goods: Sequence[frozenset[str]]) -> list[tuple[str, str]]:

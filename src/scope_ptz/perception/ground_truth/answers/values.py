@@ -72,7 +72,8 @@ def answer_attribute(view: View, question: tree.Ask) -> TruthAnswer:
     if not stated:
         attribute, subject = " ".join(question.attribute), definite_as_asked(view, question.what)
         verb = is_or_are(2 if is_plural(question.what) else 1)
-        missing = f"what {subject} {verb} {attribute}" if attribute.endswith("ing") else f"the {attribute} of {subject}"
+        is_predicate = attribute.endswith("ing") or attribute == "for"
+        missing = f"what {subject} {verb} {attribute}" if is_predicate else f"the {attribute} of {subject}"
         return unknown_answer(f"I cannot tell {missing}")
     prefix = next((v for words, v in _VALUE_PREFIXES.items() if set(words.split()) & set(question.attribute)), "")
     if prefix == "facing " and all("direction" in t.attributes for t, _ in stated):
@@ -82,6 +83,9 @@ def answer_attribute(view: View, question: tree.Ask) -> TruthAnswer:
     distinct = Counter(v for _, v in stated)
     if question.attribute == ("sells",):
         return _goods_sentence(view, question.what, distinct)
+    if len(distinct) == 1 and len(stated) < len(matches):
+        kind = noun_phrase(view, question.what, plural=True)
+        return known_answer(f"{len(stated)} of the {len(matches)} {kind} {is_or_are(len(stated))} {prefix}{stated[0][1]}")
     if len(distinct) == 1:
         subject = definite_phrase(view, question.what, plural=len(stated) > 1)
         return known_answer(f"{subject} {is_or_are(len(stated))} {prefix}{stated[0][1]}")

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from scope_ptz import english
+from scope_ptz.english.grammar.lexicon import lexicon
 from scope_ptz.english.grammar.questions import question_tree as tree
 from scope_ptz.english.grammar.questions.ambiguity import is_person
-from scope_ptz.perception.ground_truth.answers.restating import definite_as_asked
+from scope_ptz.perception.ground_truth.answers.restating import definite_as_asked, none_in_view
 from scope_ptz.perception.ground_truth.answers.thing_names import (
     TruthAnswer,
     coloured_name,
@@ -34,8 +35,16 @@ def asked_vehicle(view: View, description: tree.Description) -> tree.Description
     inside = [
         t.other for t in phrase.tests if isinstance(t, tree.Relation) and t.kind == "on" and t.preposition in {*INSIDE, "of", ""}
     ]
+    if driven is not None and names_vehicle(driven):
+        return driven  # if it is not in view, the answer says so
     candidates = [driven] if driven is not None else inside
     return next((c for c in candidates if _vehicles(view, c) or c.phrases[0].words == ("it",)), None)
+
+
+def names_vehicle(description: tree.Description) -> bool:
+    """Return whether the noun of a description is a vehicle or a machine, in view or not."""
+    concept = lexicon().concept(description.phrases[0].words[-1])
+    return concept is not None and bool(lexicon().kinds(concept) & {"vehicle", "machine"})
 
 
 def driven_vehicle(phrase: tree.Phrase) -> tree.Description | None:
@@ -58,6 +67,8 @@ def answer_about_occupants(
     """
     asked = description.phrases[0].words[0]
     vehicles = _vehicles(view, vehicle)
+    if not vehicles and names_vehicle(vehicle):
+        return known_answer(none_in_view(view, vehicle))
     occupants = [t for t in view.things if t.parent in {v.id for v in vehicles} and "person" in t.concepts]
     if occupants and asked in _DRIVERS | _ANYONE:
         yes = "yes, " if is_yes_no else ""

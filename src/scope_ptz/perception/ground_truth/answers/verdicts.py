@@ -57,6 +57,9 @@ def answer_yes_no(view: View, question: tree.YesNo) -> TruthAnswer:
     if undecided_people(view, whole) and not find(view, whole):
         return unknown_answer(f"I cannot tell whether anyone is {undecided_words(view, whole)}")
     subject, tests = _split_question(view, question)
+    scope = question.scope
+    if tests and (parts := _parts_of_whole(subject)) is not None:
+        subject, scope = parts, "all"
     if not tests:
         if not find(view, subject) and (activity := _unstated_activity(view, subject)):
             return unknown_answer(f"I cannot tell whether anyone is {activity}")
@@ -84,9 +87,25 @@ def answer_yes_no(view: View, question: tree.YesNo) -> TruthAnswer:
     choice = _answer_choice(view, subject, tests, things)
     if choice is not None:
         return choice
-    return _answer_verdict(
-        view, question.scope, subject, tests, things, [t for t, answer in zip(things, answers, strict=True) if answer]
-    )
+    return _answer_verdict(view, scope, subject, tests, things, [t for t, answer in zip(things, answers, strict=True) if answer])
+
+
+def _parts_of_whole(subject: tree.Description) -> tree.Description | None:
+    """Return the parts by which a whole is judged: "the parking spaces" for "the car park"; None for other things.
+
+    The whole has a state only if all of its parts have it.
+    """
+    (phrase, *others) = subject.phrases
+    if others or phrase.words[-2:] not in _WHOLES:
+        return None
+    return tree.Description((replace(phrase, words=(*phrase.words[:-2], *_WHOLES[phrase.words[-2:]])),))
+
+
+_WHOLES: dict[tuple[str, ...], tuple[str, ...]] = {
+    ("car", "park"): ("parking", "spaces"),
+    ("parking", "lot"): ("parking", "spaces"),
+}
+"""Wholes that scenes model only by their parts, with the parts."""
 
 
 def _answer_about_compound(
@@ -301,6 +320,8 @@ def _answer_no(
     fact = _actual_value(view, tests[-1], things) if len(tests) == 1 and not has_several_phrases else None
     if fact:
         return known_answer(f"no, {fact}")
+    if asks_any and total == 1:
+        return known_answer(f"no, the only {noun_phrase(view, subject)} in view {predicate_words(view, tests, 1, negated=True)}")
     if asks_any or (total > 1 and not has_several_phrases):
         return known_answer(
             f"no, none of the {total} {noun_phrase(view, subject, plural=True)} in view {predicate_words(view, tests, total)}"

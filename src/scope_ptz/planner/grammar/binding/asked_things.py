@@ -32,6 +32,7 @@ _WHICH = re.compile(
 _LEFT = re.compile(r" (?:gone|going|got to|off to|now)$", re.IGNORECASE)
 """Words at the end of "where has the van gone" that do not describe the thing."""
 
+_NUMBERED = re.compile(r"(?P<kind>[a-z][a-z -]*) \d+", re.IGNORECASE)
 _PLAIN_ARTICLES = frozenset({"the", "any", "some"})
 _VERB_BEFORE = re.compile(r"\b(?:is|are|does|do|has|have) $", re.IGNORECASE)
 _VERBS = {"has": "with", "have": "with", "wear": "wearing", "carry": "carrying", "hold": "holding"}
@@ -89,7 +90,14 @@ def two_things(question: str) -> tuple[str, ...]:
 
 
 def with_other_thing(question: str, description: str) -> str | None:
-    """Return the same question about another thing: "what colour is the green lorry?"; None if it asks about no thing."""
+    """Return the same question about another thing: "what colour is the green lorry?"; None if it asks about no thing.
+
+    Another number replaces that of the same kind: with "dock 6", "is there a lorry at dock 5?" asks about a lorry at dock 6.
+    """
+    if (numbered := _NUMBERED.fullmatch(description)) is not None:
+        same_kind = re.compile(rf"\b{re.escape(numbered['kind'])} \d+\b", re.IGNORECASE)
+        if len(same_kind.findall(question)) == 1:
+            return same_kind.sub(description, question)
     thing = asked_thing(question)
     if thing is None or thing.end <= thing.start:
         return None

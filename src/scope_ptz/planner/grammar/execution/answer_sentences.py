@@ -70,9 +70,19 @@ def _participle_after_noun(description: str) -> re.Match[str] | None:
     """Return the participle that follows the noun, as in "people sitting down", but not in "market awning"."""
     for match in re.finditer(r"\s(\w+ing)\b", description):
         last = description[: match.start()].split(" ")[-1].lower()
-        if english.is_plural(last) and not is_common_noun(match[1].lower()) and lexicon().concept(match[1].lower()) is None:
+        if (
+            (english.is_plural(last) or is_person_noun(last))
+            and not is_common_noun(match[1].lower())
+            and lexicon().concept(match[1].lower()) is None
+        ):
             return match
     return None
+
+
+def is_person_noun(noun: str) -> bool:
+    """Return whether a singular or plural noun is a word for people."""
+    concept = lexicon().concept(noun)
+    return concept is not None and "person" in lexicon().kinds(concept)
 
 
 def _finite_verb_after_noun(description: str) -> re.Match[str] | None:
@@ -90,8 +100,7 @@ def _with_relative_pronoun(head: str, rest: str, count: float) -> str:
     if (match := _FINITE_VERB.match(rest)) is None:
         return rest
     verb = match[1].lower()
-    concept = lexicon().concept(head.split(" ")[-1].lower())
-    pronoun = "who" if concept is not None and "person" in lexicon().kinds(concept) else "that"
+    pronoun = "who" if is_person_noun(head.split(" ")[-1].lower()) else "that"
     return f" {pronoun} {_THIRD_PERSON.get(verb, f'{verb}s') if count == 1 else verb} {rest[match.end() :]}"
 
 
@@ -183,6 +192,12 @@ def not_understood_text(error: str) -> str:
     return f'I did not understand "{match["text"] or words}"'
 
 
+def object_pronoun(description: str) -> str:
+    """Return the pronoun for one thing as an object: "it", or "them" for a person, whose sex may be unknown."""
+    head, _ = head_and_rest(description)
+    return "them" if is_person_noun(head.split(" ")[-1].lower()) else "it"
+
+
 def with_lower_initial(text: str) -> str:
     """Return text with a lower-case first letter, unless it begins with "I" or capitals, so that it can follow a colon."""
     return text if len(text) < 2 or not text[1].islower() else text[0].lower() + text[1:]
@@ -191,6 +206,7 @@ def with_lower_initial(text: str) -> str:
 def chosen_text(description: str, matches: int, chosen: str) -> str:
     """Return which of several things was chosen: "one of the 20 signs in view, the Plough sign"."""
     name = chosen.removeprefix("The ").removeprefix("the ")
+    name = "" if name.lower() == noun(description, 1).lower() else name  # "white van" does not say which of the white vans
     return f"one of the {matches} {noun(description, matches)} in view{f', the {name}' if name else ''}"
 
 

@@ -7,6 +7,7 @@ import re
 from typing import TYPE_CHECKING, Any
 
 from scope_ptz.english.grammar.questions.positions import without_position
+from scope_ptz.english.grammar.questions.question_parser import parse_question
 from scope_ptz.planner.grammar.execution import answer_sentences as phrases
 from scope_ptz.planner.grammar.execution.move_arguments import return_arguments
 from scope_ptz.planner.grammar.execution.run_state import CallGenerator, Offer, RunState
@@ -60,22 +61,28 @@ class CloserLook(RunState):
         result = yield from self._perception_call("query_answer", question=plain, view=view)
         if result is None or view != "current" or self.moves_are_forbidden or not is_too_small(result):
             return result
+        if largest := _object_with_largest_text(result):
+            thing, named = largest, f"What does the {largest} say?"
+            question = named if parse_question(named) is not None else question
         thing = thing or _object_with_text(result) or thing_of(question)
         if not thing:
             return result
         if not self.may_go_closer:
             self.offers.append(Offer(thing, question, self.pose))
             return result
-        return (yield from self._from_close_up(question, thing, result))
+        return (yield from self._from_close_up(question, thing, result, of_several=bool(largest)))
 
     def _can_zoom_in(self) -> bool:
         """Return whether the lens has room for a closer view."""
         return self.pose is not None and self.pose.zoom < self.limits.max_zoom - 0.01
 
-    def _from_close_up(self, question: str, thing: str, before: dict[str, Any] | None) -> CallGenerator:
+    def _from_close_up(
+        self, question: str, thing: str, before: dict[str, Any] | None, *, of_several: bool = False
+    ) -> CallGenerator:
         """Zoom in on a thing, ask a question about it, and put the camera back. Return the result, or ``before`` if there is none.
 
         If a part cannot be found ("licence plate of the van"), the camera zooms in on the whole.
+        With ``of_several``, the user wants to have several things read, and the thing is the one with the largest text.
         """
         start, found = self.pose, False
         for target in dict.fromkeys((thing, _whole_of(thing))):
@@ -95,11 +102,14 @@ class CloserLook(RunState):
             if zoomed is not None and zoomed.get("found"):
                 result = yield from self._perception_call("query_answer", question=question, view="current")
         if result is None or not result.get("known", True):
-            self._note(f"I zoomed in on the {thing}, but that did not help, so I put the camera back")
+            extent = "" if self._can_zoom_in() else " as far as I can"
+            self._note(f"I zoomed in on the {thing}{extent}, but that did not help, so I put the camera back")
         elif (matches := zoomed.get("matches", 1)) > 1:
             chosen = phrases.chosen_text(thing, matches, zoomed.get("chosen", ""))
             others = "other one" if matches == 2 else f"other {matches - 1}"
             self._note(f"I zoomed in on {chosen}, and put the camera back afterwards; I did not go closer to the {others}")
+        elif of_several:
+            self._note(f"I zoomed in on the {thing} only, which has the largest text, and put the camera back afterwards")
         else:
             self._note(f"I zoomed in on the {thing} to answer that, and put the camera back afterwards")
         if self.assume_met:
@@ -121,7 +131,16 @@ def _object_with_text(result: dict[str, Any]) -> str:
     return match[1] if match else ""
 
 
-_OBJECT_WITH_TEXT = re.compile(r"^The .+ is on the (.+), but it is too small to read")
+_OBJECT_WITH_TEXT = re.compile(r"^The .+ (?:is|may be) on the (.+), but it is too small to read")
+
+
+def _object_with_largest_text(result: dict[str, Any]) -> str:
+    """Return the object of several that has the largest text, according to an answer; empty if the answer names none."""
+    match = _OBJECT_WITH_LARGEST_TEXT.search(str(result.get("answer", "")))
+    return match[1] if match else ""
+
+
+_OBJECT_WITH_LARGEST_TEXT = re.compile(r"; the largest that faces the camera is on the (.+?)\.?$")
 
 
 def _whole_of(thing: str) -> str:

@@ -153,7 +153,7 @@ class Program(ReturnSteps, ComparisonSteps):
         followed = phrases.noun(text, 1)
         seconds = phrases.number(result.get("duration_s", step.seconds))
         time = motion.share_of_time(result.get("held_share", 0.0))
-        self._note(f"I followed the {followed} for {seconds} seconds and had it in view {time}")
+        self._note(f"I followed the {followed} for {seconds} seconds and had {phrases.object_pronoun(followed)} in view {time}")
 
     def _count(self, step: ast.Count) -> CallGenerator:
         view, counted = step.view or "current", list[str]()

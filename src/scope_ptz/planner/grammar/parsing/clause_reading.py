@@ -93,6 +93,13 @@ class ClauseSequenceReader:
             and (places := places_of(self.reader.source, match["places"]))
         ):
             return (SameAt(places),)  # "count the people at the gate, and then at the yard"
+        if isinstance(self.last_step, ZoomTo | Read) and (lacking := full_match("no (?P<part>FREE{1,3})", clause.lexemes)):
+            part = text_of(self.reader.source, lacking["part"])  # "zoom in on the man in the vest and no helmet"
+            return (
+                Unclear(
+                    f'I did not understand "no {part}". Please describe the thing in one phrase, such as "... without {part}".'
+                ),
+            )
         if isinstance(self.last_step, GoToPreset) and not clause.is_question:
             clause = replace(clause, lexemes=_as_command(clause.lexemes))
         try:

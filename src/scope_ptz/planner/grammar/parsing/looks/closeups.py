@@ -57,7 +57,7 @@ def read_step(source: Source, lexemes: Sequence[Lexeme], view: View | None) -> S
         words,
     ):
         words = seen["thing"]  # "every sign you can see"
-    things = things_of(source, words)
+    things = things_of(source, words) or things_of(source, match["thing"])  # "nearest sign" is a noun phrase only with its article
     if things is None:
         return None
     return Read(things[0], view) if len(things) == 1 else tuple(Read(thing, view) for thing in things)

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from scope_ptz.english import COLOURS
 from scope_ptz.planner.grammar.instruction_tree import (
     AtPlaces,
     BeforeAfter,
@@ -329,6 +331,8 @@ def _thing_comparison(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
             continue
         first, second = thing_of(source, match["first"]), thing_of(source, trimmed(match["second"], "VISIBLE"))
         if first and second and first.text and second.text:
+            if first.text.lower() in COLOURS and second.text.lower().endswith(" ones"):
+                first = replace(first, text=f"{first.text} ones")  # "more blue than red ones"
             way = _comparison(match["way"]) if "way" in match.names else "more"
             step: Step = Compare(first, second, way, view, yes_no=_is_yes_no(lexemes))
             return AtPlaces(places, (step,)) if places else step

@@ -9,6 +9,7 @@ from scope_ptz.english import is_plural
 from scope_ptz.english.grammar.parts_of_speech import verb_form
 from scope_ptz.english.grammar.questions.recognition import looks_like_description
 from scope_ptz.planner.grammar.instruction_tree import (
+    Ask,
     AtPlaces,
     Count,
     Step,
@@ -44,6 +45,9 @@ _SEEING = (
     r"are we (SEE-ING|AIM-ING at)|you are SEE-ING|exist|VISIBLE|BE|in total|in all|(what|that)? SELF (can)? (SEE|FIND)|"
     r"altogether)"
 )
+
+
+_READING = "(can|could) SELF (ADVERB|FILLER)* READ (VISIBLE|FILLER|NOW|out|there)*"
 
 
 _IN_ALL = "in_total|in total|altogether|in_all|in all|overall"
@@ -88,6 +92,8 @@ def count_step(source: Source, lexemes: Sequence[Lexeme], view: View | None) -> 
     ):
         if match["how"][0].word in {"how much", "how_much"} and match["rest"][0].word == "of":
             return None  # "how much of the blade is iced" asks for a proportion
+        if full_match(f"_+ {_READING}", match["rest"]):
+            return Ask(f"How many {text_of(source, match['rest'])}?", view)  # only perception knows which text is legible
         return _counted(source, match["rest"], view, lexemes, match["how"][0])
     if full_match(rf"{SKIP} HOWMANY {SKIP}", lexemes):
         return Count((Thing(),), view)
