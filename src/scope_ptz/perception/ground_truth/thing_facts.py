@@ -9,118 +9,9 @@ from functools import lru_cache
 from scope_ptz import english
 from scope_ptz.english.grammar.lexicon import lexicon, nouns_in, singular_phrase
 from scope_ptz.perception.ground_truth.view import Thing, View, head_of
+from scope_ptz.perception.ground_truth.vocabulary import FILLER_WORDS, are_opposites, canonical_form, opposites_of
 from scope_ptz.simulator.models import Attribute
 
-_STATES = [
-    "",
-    "open: opened ajar",
-    "closed: shut locked",
-    "lit: illuminated glowing flashing alight",
-    "unlit: dark",
-    "moving: driving travelling traveling",
-    "stationary: parked stopped still standstill idle",
-    "empty: unloaded unoccupied vacant free",
-    "full: loaded occupied laden",
-    "raised: up lifted",
-    "lowered: down",
-    "walking: strolling",
-    "sitting: seated",
-    "upright: standing",
-    "fallen: toppled overturned lying knocked",
-    "working: operating operational active running",
-    "",
-]
-"""States with their synonyms, in the form ``state: synonyms``."""
-_CANONICAL_FORMS = {word: line.partition(":")[0] for line in _STATES if line for word in line.replace(":", "").split()} | {
-    "gray": "grey", "amber": "orange", "violet": "purple", "golden": "gold", "metallic": "metal", "steel": "metal",
-    "standing": "upright", "stand": "upright", "wood": "wooden", "timber": "wooden", "male": "man", "female": "woman",
-}  # fmt: skip
-_OPPOSITES = [
-    ("open", "closed"), ("lit", "unlit"), ("lit", "off"), ("on", "off"), ("moving", "stationary"), ("empty", "full"),
-    ("raised", "lowered"),
-    ("sitting", "upright"), ("upright", "fallen"), ("walking", "upright"), ("walking", "stationary"), ("walking", "sitting"),
-    ("working", "off"), ("waiting", "moving"), ("waiting", "walking"),
-]  # fmt: skip
-IGNORABLE_WORDS = frozenset(
-    [
-        "big",
-        "large",
-        "small",
-        "little",
-        "huge",
-        "tiny",
-        "tall",
-        "short",
-        "long",
-        "wide",
-        "narrow",
-        "whole",
-        "entire",
-        "main",
-        "other",
-        "visible",
-        "nearby",
-        "actual",
-        "particular",
-        "present",
-        "current",
-        "certain",
-        "same",
-        "real",
-        "single",
-        "lone",
-        "only",
-        "different",
-        "various",
-        "individual",
-        "standing",
-        "sitting",
-        "hanging",
-        "lying",
-        "placed",
-        "full-size",
-        "mounted",
-        "shown",
-        "displayed",
-        "there",
-        "located",
-        "parked",
-        "stationary",
-        "moving",
-    ]
-)
-"""Words in a description that are ignored if the scene states no fact about them."""
-FILLER_WORDS = frozenset(
-    [
-        "the",
-        "a",
-        "an",
-        "is",
-        "are",
-        "it",
-        "its",
-        "of",
-        "in",
-        "on",
-        "at",
-        "and",
-        "be",
-        "being",
-        "with",
-        "very",
-        "quite",
-        "really",
-        "currently",
-        "colour",
-        "color",
-        "coloured",
-        "colored",
-        "one",
-        "ones",
-        "parts",
-    ]
-)
-"""Words that say nothing about a thing and are skipped. "On" and "in" are tested if no other word remains ("is it on?")."""
 TEXT_KEYS = frozenset(["reads", "text", "plate", "lettering", "number", "signal", "sign", "label", "readable_by", "inscription"])
 """Attributes that repeat the text on a thing. They are not used, because only legible text may be reported."""
 _ROLE_KEYS = frozenset({"role", "stall", "area", "facing"})
@@ -129,16 +20,6 @@ _CLOTHING_KEYS = frozenset({"wearing", "clothing", "clothes", "outfit", "ppe"})
 COLOUR_KEYS = ("colour", "color")
 ABSENT_VALUES = frozenset({"", "none", "no", "false", "nothing", "without"})
 """Lower-case attribute values of things that lack the attribute."""
-
-
-def canonical_form(word: str) -> str:
-    """Return the canonical synonym of a word, or the word itself."""
-    return _CANONICAL_FORMS.get(word, word)
-
-
-def are_opposites(a: str, b: str) -> bool:
-    """Return whether two words are mutually exclusive."""
-    return (a, b) in _OPPOSITES or (b, a) in _OPPOSITES
 
 
 def key_words(key: str) -> list[str]:
@@ -164,7 +45,7 @@ def fact_words(thing: Thing) -> set[str]:
             result |= {canonical_form(x) for x in words}
             result |= {"on"} if "lit" in words else set()
         elif value is False:
-            result |= {b for pair in _OPPOSITES for a, b in (pair, pair[::-1]) if a in {canonical_form(x) for x in words}}
+            result |= opposites_of({canonical_form(x) for x in words})
         elif not (is_colour(value) and words[-1] not in COLOUR_KEYS and any(k in thing.attributes for k in COLOUR_KEYS)) and not (
             is_worn(key) and "person" in thing.concepts
         ):

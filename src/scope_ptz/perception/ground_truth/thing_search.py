@@ -34,8 +34,6 @@ from scope_ptz.perception.ground_truth.relations import (
 )
 from scope_ptz.perception.ground_truth.stated_items import is_open_item
 from scope_ptz.perception.ground_truth.thing_facts import (
-    FILLER_WORDS,
-    IGNORABLE_WORDS,
     colour_of,
     facts,
     fits_noun,
@@ -44,6 +42,7 @@ from scope_ptz.perception.ground_truth.thing_facts import (
     has_text,
 )
 from scope_ptz.perception.ground_truth.view import Thing, View
+from scope_ptz.perception.ground_truth.vocabulary import FILLER_WORDS, IGNORABLE_WORDS
 
 INSIDE = frozenset({"in", "inside", "inside of", "inside the"})
 """The prepositions of kind "on" that say that a thing is inside another."""

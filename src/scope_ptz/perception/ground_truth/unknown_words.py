@@ -12,8 +12,8 @@ from scope_ptz.english.grammar.common_nouns import is_common_noun
 from scope_ptz.english.grammar.lexicon import nouns_in
 from scope_ptz.english.grammar.parts_of_speech import parts_of_speech
 from scope_ptz.english.grammar.questions import question_tree as tree
-from scope_ptz.perception.ground_truth.thing_facts import FILLER_WORDS, IGNORABLE_WORDS
 from scope_ptz.perception.ground_truth.view import View
+from scope_ptz.perception.ground_truth.vocabulary import FILLER_WORDS, IGNORABLE_WORDS
 
 _PRONOUNS = frozenset({("it",), ("them",)})
 """Pronouns that cannot refer to anything, because no sentence precedes a question about a picture."""

@@ -11,9 +11,9 @@ from scope_ptz.english.grammar.questions import question_tree as tree
 from scope_ptz.perception.ground_truth.answers.legible_text import illegibility, is_only_too_small
 from scope_ptz.perception.ground_truth.answers.restating import phrase_as_asked
 from scope_ptz.perception.ground_truth.answers.thing_names import TruthAnswer, known_answer, unknown_answer
-from scope_ptz.perception.ground_truth.thing_facts import FILLER_WORDS
 from scope_ptz.perception.ground_truth.thing_search import find, split_after_noun
 from scope_ptz.perception.ground_truth.view import View
+from scope_ptz.perception.ground_truth.vocabulary import FILLER_WORDS
 from scope_ptz.simulator.truth import TextSighting
 
 _PRICE = re.compile(r"(?<![\d.:])\d+\.\d\d(?![\d.])")

@@ -29,8 +29,6 @@ from scope_ptz.perception.ground_truth.answers.thing_names import (
 from scope_ptz.perception.ground_truth.thing_facts import (
     ABSENT_VALUES,
     COLOUR_KEYS,
-    are_opposites,
-    canonical_form,
     colour_of,
     fact_words,
     facts,
@@ -41,6 +39,7 @@ from scope_ptz.perception.ground_truth.thing_facts import (
 )
 from scope_ptz.perception.ground_truth.thing_search import find, find_excluding_wearers
 from scope_ptz.perception.ground_truth.view import Thing, View
+from scope_ptz.perception.ground_truth.vocabulary import are_opposites, canonical_form
 
 UNANSWERABLE_SUBJECTS = frozenset(
     "it time day weather date temperature mood today season month year hour brand owner price name age".split()  # noqa: SIM905

@@ -34,8 +34,6 @@ from scope_ptz.perception.ground_truth.answers.values import answer_absent, is_u
 from scope_ptz.perception.ground_truth.answers.vehicle_interiors import answer_about_occupants, asked_vehicle
 from scope_ptz.perception.ground_truth.thing_facts import (
     TEXT_KEYS,
-    are_opposites,
-    canonical_form,
     colour_of,
     contains_words,
     fact_words,
@@ -44,6 +42,7 @@ from scope_ptz.perception.ground_truth.thing_facts import (
 )
 from scope_ptz.perception.ground_truth.thing_search import find, holds, is_place, split_after_numbered_noun, without_waiting
 from scope_ptz.perception.ground_truth.view import Thing, View
+from scope_ptz.perception.ground_truth.vocabulary import are_opposites, canonical_form
 
 _ANYBODY_WORDS = frozenset(["anyone", "anybody", "someone", "somebody", "anything", "something"])
 _EVERYBODY_WORDS = frozenset(["everyone", "everybody", "everything", "they"])
