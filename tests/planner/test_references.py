@@ -137,8 +137,10 @@ def test_nobody_is_named() -> None:
     assert last_turn("zoom in on her") == ([], "Who do you mean by 'her'? Please name the person.")
 
 
-def test_one_of_several_things_is_asked_about() -> None:
-    answer = "There are 2 forklifts: one on the left and one on the right."
+@pytest.mark.parametrize(
+    "answer", ["There are 2 forklifts: one on the left and one on the right.", "The 2 yellow forklifts are on the left."]
+)
+def test_one_of_several_things_is_asked_about(answer: str) -> None:
     calls, reply = last_turn("where's the forklift?", "follow it", answer=answer)
     assert (calls, reply) == ([], "Which of the 2 forklifts do you mean?")
     answer = "Yes, there are 3 things with an umbrella: a man, a woman and a child."

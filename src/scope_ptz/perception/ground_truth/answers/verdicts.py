@@ -78,7 +78,7 @@ def answer_yes_no(view: View, question: tree.YesNo) -> TruthAnswer:
     if missing is not None:
         return unknown_answer(f"I cannot tell: {none_in_view(view, missing)}")
     answers = [_all_hold([holds(view, t, test) for test in tests]) for t in things]
-    if things and True not in answers and False not in answers:
+    if True not in answers and False not in answers:
         return _answer_about_compound(view, question, subject, tests) or _cannot_tell_whether(view, subject, tests)
     is_unknown = None in answers or any(_is_unknown_place(view, t) or unmodelled_place(view, _at(t)) for t in tests)
     if is_unknown and True not in answers:

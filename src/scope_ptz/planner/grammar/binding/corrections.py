@@ -61,7 +61,8 @@ def corrected_text(lexemes: Sequence[Lexeme], text: str, last: Command, *, was_r
     if _is_bare_no(lexemes[:size]) or _may_approve(lexemes[:size], rest):
         return None  # "no left" may forbid a turn
     if len(last.steps) == 1 and isinstance(last.steps[0], ast.GoToPreset):
-        return f"go to the {number['which'][0].word} preset" if (number := full_match(_OTHER_NUMBER, rest)) else None
+        number = full_match(_OTHER_NUMBER, rest)
+        return f"go to the {text[number['which'][0].start : number['which'][0].end]} preset" if number is not None else None
     if isinstance(last.steps[0] if len(last.steps) == 1 else None, ast.ZoomTo | ast.Track | ast.Count):
         return _with_other_thing(last.steps[0], text[rest[0].start : rest[-1].end], rest)
     if any(x.has(*_VERBS) for x in rest):

@@ -30,8 +30,6 @@ _SHARE = re.compile(
 )
 """Wordings that narrow what the turn before was about."""
 
-_STATED_NUMBER = re.compile(r"\b(\d+) (?:[\w'’-]+ ){0,3}?([\w'’-]+)")
-
 _EXIST = re.compile(r"(?:yes, )?there are (\d+) ", re.IGNORECASE)
 _LISTED = re.compile(r"((?:An?|\d+) .+) are ")
 """An answer that lists the things: "A child, a man with a hat and 2 women are waiting."."""
@@ -158,9 +156,11 @@ def _stated_number(answer: str, description: str) -> int | None:
     several = head_noun(noun(description, 2)).lower()
     if several == "persons":
         several = "people"
-    stated = next((int(match[1]) for match in _STATED_NUMBER.finditer(answer) if match[2].lower() == several), None)
-    if stated is not None or (listed := _LISTED.match(answer)) is None:
-        return stated
+    stated = re.search(rf"\b(\d+) (?:[\w'’-]+ ){{0,3}}?{re.escape(several)}\b", answer, re.IGNORECASE)
+    if stated is not None:
+        return int(stated[1])
+    if (listed := _LISTED.match(answer)) is None:
+        return None
     return sum(int(match[1]) if (match := re.match(r"(\d+) ", item)) else 1 for item in re.split(r", | and (?=an? |\d)", listed[1]))
 
 

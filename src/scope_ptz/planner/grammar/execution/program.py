@@ -31,6 +31,7 @@ _CAPABILITIES = (
     "and zoom in on or follow things"
 )
 _DEFAULT_MAX_MOVES = 24  # maximum number of moves of a loop if the instruction gives none
+_SOMEONE = frozenset({"anyone", "anybody", "someone", "somebody", "people"})
 _MAX_REQUESTED_MOVES = 100  # maximum number of moves of a loop that an instruction can request
 
 
@@ -150,7 +151,7 @@ class Program(ReturnSteps, ComparisonSteps):
             self._note(f"I could not find {_the(step.thing)} to follow")
             return
         self._moved_to_object = True
-        followed = phrases.noun(text, 1)
+        followed = "person" if text.lower() in _SOMEONE else phrases.noun(text, 1)
         seconds = phrases.number(result.get("duration_s", step.seconds))
         time = motion.share_of_time(result.get("held_share", 0.0))
         self._note(f"I followed the {followed} for {seconds} seconds and had {phrases.object_pronoun(followed)} in view {time}")
