@@ -30,6 +30,9 @@ def reworded_in_context(before: Sequence[Lexeme], lexeme: Lexeme, after: Lexeme 
     begins_duration = after is not None and (after.has("NUM", "SECONDS", "MINUTES") or after.word == "few")
     if lexeme.word in {"next", "following"} and last is not None and last.has("DET") and begins_duration:
         return []  # "for the next two minutes"
+    turns = last is not None and last.has("PAN", "TURN", "CARRY", "CAMERA", "AND", "NUM", "DEG")
+    if lexeme.word == "right" and after is not None and after.word in {"here", "there"} and not turns:
+        return [lexeme.reworded("right", "ADVERB")]  # "hold it right there"
     if lexeme.word == "neither" and search("IF|WHEN|UNLESS|UNTIL", before):
         return [lexeme.reworded("no", "NONE", "DET")]  # "if you see neither people nor cars"
     if lexeme.word == "nor" and any(x.has("NONE") for x in before):

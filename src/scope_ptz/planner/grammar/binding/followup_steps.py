@@ -1,0 +1,126 @@
+"""Resolve short follow-ups to earlier turns: "and the blue one?", "what about the left one?", "and in the right half?"."""
+
+from __future__ import annotations
+
+import re
+from abc import abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from scope_ptz.planner.grammar import instruction_tree as ast
+from scope_ptz.planner.grammar.binding.asked_things import with_other_thing
+from scope_ptz.planner.grammar.binding.focus import PLURAL, foci_of, like_to_know, which_one
+from scope_ptz.planner.grammar.binding.followups import is_adjective
+from scope_ptz.planner.grammar.binding.names import Names, UnresolvedError
+from scope_ptz.planner.grammar.binding.narrowing import is_region, narrowed, with_region_noun
+from scope_ptz.planner.grammar.binding.noun_heads import head_noun, names_person, names_several
+from scope_ptz.planner.grammar.binding.pending_questions import pending_step, with_thing
+from scope_ptz.planner.grammar.binding.preset_matching import match_preset
+from scope_ptz.planner.grammar.execution.answer_sentences import noun
+
+_ONE = re.compile(r"\bone\b", re.IGNORECASE)
+
+
+@dataclass(slots=True)
+class FollowUpSteps(Names):
+    """Resolves the steps that repeat the last look of the conversation for something else."""
+
+    @abstractmethod
+    def _bind(self, step: ast.Step) -> Sequence[ast.Step]:
+        """Return the steps that a step stands for, with all names resolved."""
+
+    @abstractmethod
+    def _count(self, step: ast.Count) -> Sequence[ast.Step]:
+        """Return a count with its names resolved."""
+
+    def _only_one(self) -> str:
+        """Return the description of the thing that was named last, of which there is a single one.
+
+        Raises:
+            UnresolvedError: There are several, of which the camera can show only one.
+        """
+        last = self.foci[-1] if self.foci else None
+        if last is None or self.antecedent or last.is_several:
+            raise UnresolvedError(which_one(last) if last is not None else f"Which {noun(self.topic, 1)} do you mean?")
+        self.antecedent = last.one
+        return last.one
+
+    def _whatabout(self, step: ast.WhatAbout) -> Sequence[ast.Step]:
+        if step.thing.text and self.presets and (name := match_preset(step.thing.text, self.presets)):
+            return [ast.GoToPreset(ast.PresetRef(name, explicit=True)), *self._last_question()]
+        pending, topic = pending_step(self.conversation, self.presets or ()), self.topic
+        if self.foci and self._is_region_without_noun(step.thing):
+            step = ast.WhatAbout(ast.Thing(predicate=step.thing.text))
+        if step.thing.predicate and (counted := self._count_before_moves(step.thing.predicate)):
+            return self._count(ast.Count((ast.Thing(narrowed(counted, step.thing.predicate)),)))
+        thing = self.thing(self._with_noun_if_bare(step.thing))
+        if not self.conversation:
+            return self._count(ast.Count((thing,)))
+        if isinstance(pending, ast.ZoomTo) and step.thing.pronoun in PLURAL:
+            raise UnresolvedError(which_one(self.foci[-1]) if self.foci else "Which one do you mean? Please describe it.")
+        if pending is not None:
+            return self._bind(with_thing(pending, thing.text))
+        if self.foci and self.foci[-1].look in {"count_objects", "named"} and _ONE.search(step.thing.text):
+            raise UnresolvedError(like_to_know(thing.text))  # a count says nothing about one thing
+        if step.thing.pronoun == "both" and self.foci and self.foci[-1].look in {"count_objects", "query_answer"}:
+            raise UnresolvedError(f"What shall I do with the {thing.text}?")
+        return [self._last_look_at(thing, topic)]
+
+    def _with_noun_if_bare(self, thing: ast.Thing) -> ast.Thing:
+        """Add the last noun to an adjective: "and the farthest?" after "which car is nearest?" means the farthest car."""
+        if " " in thing.text or not self.foci or not is_adjective(thing.text.lower()):
+            return thing
+        if not thing.definite:
+            return ast.Thing(predicate=thing.text)  # "and blue?"
+        return replace(thing, text=f"{thing.text} one")
+
+    def _count_before_moves(self, predicate: str) -> str:
+        """Return the description of the last count, to which "and in the left half?" refers once the camera has been moved.
+
+        Directly after a question, it repeats the question for a part of the picture. Later on, a question that was asked between
+        the count and the move is no longer meant. The description is empty if there is no such count.
+        """
+        has_moved = bool(self.conversation) and not foci_of(self.conversation[-1:])
+        if not has_moved or not is_region(predicate) or not self.foci or self.foci[-1].look != "query_answer":
+            return ""
+        counts = (focus for focus in reversed(self.foci) if focus.look == "count_objects")
+        counted = next(counts, None)
+        same = counted is not None and noun(head_noun(counted.description), 1) == noun(head_noun(self.foci[-1].description), 1)
+        return counted.description if counted is not None and same else ""
+
+    def _is_region_without_noun(self, thing: ast.Thing) -> bool:
+        """Return whether "the bottom right one" is a part of the picture, because the last look was at such a part."""
+        description = self.foci[-1].description
+        return bool(thing.text) and with_region_noun(thing.text, description) != thing.text
+
+    def _last_look_at(self, thing: ast.Thing, topic: str) -> ast.Step:
+        """Return the last count, question, close-up or pursuit, of another thing.
+
+        Args:
+            thing: The other thing.
+            topic: What the last look was about.
+        """
+        last = self.foci[-1] if self.foci else None
+        match last.look if last else "count_objects":
+            case "zoom_to_object":
+                return ast.ZoomTo(thing)
+            case "track_object":
+                return ast.Track(thing)
+            case "query_answer" if last is not None:
+                question = with_other_thing(last.question, thing.text)
+                verb = "are" if names_several(thing.text) else "is"
+                is_person = names_person(topic)
+                return ast.Ask(question or f"{'Who' if is_person else 'What'} {verb} the {thing.text}?", self._view(None))
+            case _:
+                return ast.Count((thing,), self._view(None))
+
+    def _last_question(self) -> list[ast.Step]:
+        """Return the last count or question of the conversation as a step."""
+        for turn in reversed(self.conversation):
+            for exchange in reversed(turn.exchanges):
+                for outcome in reversed(exchange.outcomes):
+                    if outcome.call.name == "count_objects":
+                        return [ast.Count((ast.Thing(str(outcome.call.arguments["description"])),), "current")]
+                    if outcome.call.name == "query_answer":
+                        return [ast.Ask(str(outcome.call.arguments["question"]), "current")]
+        return []
