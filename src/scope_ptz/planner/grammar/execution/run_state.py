@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Generator, Mapping
 from dataclasses import dataclass, field
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 from scope_ptz.geometry import Limits, Pose
-from scope_ptz.planner.base import Viewpoints
 from scope_ptz.planner.grammar.execution import answer_sentences as phrases
 from scope_ptz.planner.grammar.execution import move_sentences as motion
 from scope_ptz.planner.grammar.execution.camera_history import PositionHistory, VisitedPosition, is_same_pose
+
+if TYPE_CHECKING:
+    from scope_ptz.planner.base import Viewpoints
 
 _MIN_LISTED_STOPS = 3
 """Minimum number of presets in an answer with a line for each of them."""
