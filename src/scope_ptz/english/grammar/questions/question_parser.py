@@ -7,7 +7,6 @@ from functools import lru_cache
 from scope_ptz.english.grammar.lexicon import nouns_in
 from scope_ptz.english.grammar.questions.ambiguity import cheapest
 from scope_ptz.english.grammar.questions.followups import without_first_part
-from scope_ptz.english.grammar.questions.question_builder import QuestionBuilder
 from scope_ptz.english.grammar.questions.question_tree import Description, Exists, Phrase, Question
 from scope_ptz.english.grammar.questions.recognition import is_short_enough, parser
 from scope_ptz.english.grammar.questions.typed_tokens import tokenise
@@ -35,6 +34,8 @@ def parse_question(text: str) -> Question | None:
 
 
 def _best(text: str, start: str) -> Description | Question | None:
+    from scope_ptz.english.grammar.questions.question_builder import QuestionBuilder  # many runs parse no question
+
     tokens = tokenise(text)
     if not is_short_enough(tokens):
         return None
