@@ -14,6 +14,9 @@ from scope_ptz.perception.base import Answer, Detections
 from scope_ptz.perception.ground_truth import GroundTruthPerception
 
 
+pytestmark = pytest.mark.full  # reads the ground truth of whole scenes
+
+
 @cache
 def look(scene: str, preset: str) -> tuple[GroundTruthPerception, Frame]:
     """Return ground truth and the frame at a preset."""
