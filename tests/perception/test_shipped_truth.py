@@ -13,7 +13,6 @@ from scope_ptz.factory.cameras.opening import open_camera
 from scope_ptz.perception.base import Answer, Detections
 from scope_ptz.perception.ground_truth import GroundTruthPerception
 
-
 pytestmark = pytest.mark.full  # reads the ground truth of whole scenes
 
 
