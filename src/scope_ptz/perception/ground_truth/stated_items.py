@@ -9,18 +9,17 @@ from __future__ import annotations
 from scope_ptz import english
 from scope_ptz.english.grammar.lexicon import lexicon, nouns_in
 from scope_ptz.english.grammar.questions import question_tree as tree
-from scope_ptz.perception.ground_truth.thing_facts import attribute_has, facts, is_worn, names_of
+from scope_ptz.perception.ground_truth.thing_facts import CLOTHING_KEYS, attribute_has, facts, is_worn, names_of
 from scope_ptz.perception.ground_truth.view import Thing, View, concepts_of
 
 _EVERYDAY_CLOTHES = frozenset({"jacket", "trouser"})
 """Clothes that everybody wears, so that a scene does not list them unless it describes the person's clothes."""
-_CLOTHING_KEYS = frozenset({"wearing", "clothing", "clothes", "outfit", "ppe"})
 
 
 def is_open_item(view: View, thing: Thing, what: tree.Description, worn: bool) -> bool:
     """Return whether the scene leaves open if a thing has, or with ``worn`` wears, the items that a description names."""
     if "person" in thing.concepts:
-        return worn and any(map(_is_everyday, what.phrases)) and not any(k in _CLOTHING_KEYS or is_worn(k) for k, _ in facts(thing))
+        return worn and any(map(_is_everyday, what.phrases)) and not any(k in CLOTHING_KEYS or is_worn(k) for k, _ in facts(thing))
     return not worn and not all(_is_listed(view, thing, phrase) for phrase in what.phrases)
 
 

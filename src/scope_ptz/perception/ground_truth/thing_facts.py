@@ -16,7 +16,8 @@ TEXT_KEYS = frozenset(["reads", "text", "plate", "lettering", "number", "signal"
 """Attributes that repeat the text on a thing. They are not used, because only legible text may be reported."""
 _ROLE_KEYS = frozenset({"role", "stall", "area", "facing"})
 """Attributes that say who somebody is or where, and not what they have."""
-_CLOTHING_KEYS = frozenset({"wearing", "clothing", "clothes", "outfit", "ppe"})
+CLOTHING_KEYS = frozenset({"wearing", "clothing", "clothes", "outfit", "ppe"})
+"""Attributes that say what somebody wears."""
 COLOUR_KEYS = ("colour", "color")
 ABSENT_VALUES = frozenset({"", "none", "no", "false", "nothing", "without"})
 """Lower-case attribute values of things that lack the attribute."""
@@ -213,7 +214,7 @@ def has_item(view: View, thing: Thing, words: Sequence[str], amount: int | None 
         return any(str(v).lower() not in ABSENT_VALUES and all(x in value_words(v) for x in others) for v in carried)
     is_only_colour = noun in english.COLOURS  # "in red" is about clothes, and not about an umbrella
     for key, value in facts(thing):
-        is_about = is_worn(key) or key in _CLOTHING_KEYS if is_only_colour and "person" in thing.concepts else key not in _ROLE_KEYS
+        is_about = is_worn(key) or key in CLOTHING_KEYS if is_only_colour and "person" in thing.concepts else key not in _ROLE_KEYS
         if is_about and attribute_has(key, value, names_of(noun), others, amount):
             return True
     parts = [t for t in view.things if t.id != thing.id and view.belongs(t.id, thing.id)]
