@@ -42,6 +42,11 @@ class Stage:
     def _look(self) -> Any:
         return self.looks.pop(0) if len(self.looks) > 1 else self.looks[0]
 
+    def _count(self) -> dict[str, Any]:
+        """Return a count: the next look, which is a number, or a number with whether the count is complete."""
+        count, complete = look if isinstance(look := self._look(), tuple) else (look, True)
+        return {"count": count, "complete": complete}
+
     def do(self, name: str, arguments: dict[str, Any]) -> tuple[dict[str, Any] | None, str | None]:
         self.calls.append((name, arguments))
         if self.fail.get(name, 0) > 0:
@@ -50,7 +55,7 @@ class Stage:
         clamped: tuple[str, ...] = ()
         seen: dict[str, Any] = {"source": "ground-truth", "view": arguments.get("view", "current"), "frames": ()}
         extra: dict[str, Callable[[], dict[str, Any]]] = {
-            "count_objects": lambda: {**seen, "description": arguments["description"], "count": self._look(), "boxes": ()},
+            "count_objects": lambda: {**seen, "description": arguments["description"], **self._count(), "boxes": ()},
             "query_answer": lambda: {**seen, "question": arguments["question"], **self._look()},
             "zoom_to_object": lambda: {
                 **seen,

@@ -141,3 +141,24 @@ def test_there_is_the_preset_that_was_found() -> None:
 
 def test_a_comparison_without_counts_is_asked_about() -> None:
     assert last_calls("go home", "which has more?") == ([], "Which presets shall I compare, and what shall I count there?")
+
+
+@pytest.mark.parametrize(
+    ("instruction", "looks", "reply"),
+    [
+        ("how many pigeons are there?", ((2, False),), "I can see at least 2 pigeons in this view."),
+        (
+            "how many pigeons are there?",
+            ((0, False),),
+            "I cannot make out any pigeons from here, but there may be some that are too small or hidden.",
+        ),
+        (
+            "count the pigeons at the gate and at the highway",
+            (3, (0, False)),
+            "I can see 3 pigeons at gate. I cannot make out any pigeons at highway, but there may be some that are too small or "
+            "hidden.",
+        ),
+    ],
+)
+def test_things_that_cannot_be_made_out_are_not_absent(instruction: str, looks: tuple[Any, ...], reply: str) -> None:
+    assert last_calls(instruction, looks=looks)[1].startswith(reply)

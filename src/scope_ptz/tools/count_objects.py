@@ -41,7 +41,7 @@ async def count_objects(context: ToolContext, arguments: CountObjects) -> CountR
     detections = await context.perception.detect(frame, arguments.description)
     count = len(detections.boxes)
     where = "in the full scene" if arguments.view == "full" else "in the current view"
-    number = f"{count}" if detections.complete else f"At least {count}"
+    number = f"{count}" if detections.complete else f"At least {count}" if count else "No clear view"
     return CountResult(
         message=f"{number} of '{arguments.description}' {where} (seen by {detections.source}).{note_sentences(detections)}",
         pose=PoseData.of(frame.pose),

@@ -141,13 +141,14 @@ class GroundTruthPerception(Perception):
         return reply
 
     def _find(self, frame: Frame, description: str) -> tuple[Sequence[Thing | TextRegion], bool]:
-        """Return the things or texts that match a description, and whether the scene decides it for everything in view."""
+        """Return the things or texts that match a description, and whether there can be no others in view."""
         from scope_ptz.english.grammar.questions.question_parser import parse_description
         from scope_ptz.english.grammar.questions.recognition import is_description
         from scope_ptz.perception.ground_truth.answers.legible_text import find_text_regions
         from scope_ptz.perception.ground_truth.answers.restating import unmodelled_place
         from scope_ptz.perception.ground_truth.answers.undecided import undecided_reason
         from scope_ptz.perception.ground_truth.thing_search import find
+        from scope_ptz.perception.ground_truth.unclear_things import unclear_matches
         from scope_ptz.perception.ground_truth.unknown_words import find_unknown_nouns, find_unknown_qualities
 
         if not description.strip():
@@ -170,7 +171,7 @@ class GroundTruthPerception(Perception):
             raise NotUnderstoodError(f"I did not understand {_quote_list(unknown)} in the description. Name a kind of thing.")
         if not things and (unstated := find_unknown_qualities(view, parsed)):
             raise NotUnderstoodError(_UNSTATED_QUALITIES.format(words=english.listing(unstated)))
-        return things, True
+        return things, not unclear_matches(view, parsed)
 
 
 _UNSTATED_QUALITIES = "I cannot tell what is {words}. Describe the things by what a picture shows."

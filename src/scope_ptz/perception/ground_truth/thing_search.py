@@ -4,6 +4,7 @@
 - *at*: people are at a thing if they are at most 1 m from it.
 - *in* a vehicle or a machine: only people whom the scene models as part of it.
 - *waiting at* a place: being there, and not walking, because a picture shows no more.
+- "*The* car on the left", if no car is in the left band of the frame, is the leftmost car in the left half.
 - *between*: the centre lies horizontally between the centres of two things, and the thing is not clearly in front of both or behind
 both.
 - Matches are sorted by visible pixels, largest first, unless a superlative or an ordinal orders them. Ordinals without a side
@@ -96,8 +97,21 @@ def find_phrase(view: View, phrase: tree.Phrase) -> list[Thing]:
     core, extra, order = _match_core(view, phrase)
     if phrase is not asked:
         core = [t for t in core if fits_words(view, t, ["walking"]) is not True]
-    matches = [t for t in core if all(holds(view, t, test) is True for test in (*phrase.tests, *extra))]
+    tests = (*phrase.tests, *extra)
+    matches = [t for t in core if all(holds(view, t, test) is True for test in tests)] or _one_on_side(view, phrase, core, tests)
     return _select_by_order(view, sorted(matches, key=visible_pixels, reverse=True), order, phrase)
+
+
+def _one_on_side(view: View, phrase: tree.Phrase, core: Sequence[Thing], tests: Sequence[tree.Test]) -> list[Thing]:
+    """Return the thing that "the car on the left" means if none is far to the left: the leftmost of those in the left half."""
+    is_one = phrase.article == "the" and not english.is_plural(phrase.words[-1]) and phrase.order is None
+    regions = [t for t in tests if isinstance(t, tree.Region) and t.sides in {("left",), ("right",)} and not t.half]
+    if not is_one or len(regions) != 1:
+        return []
+    (side,) = regions[0].sides
+    wider = [tree.Region((side,), half=True) if t is regions[0] else t for t in tests]
+    candidates = [t for t in core if all(holds(view, t, test) is True for test in wider)]
+    return sorted(candidates, key=rank_key(_SIDES[side]))[:1]
 
 
 def _without_waiting_at_place(phrase: tree.Phrase) -> tree.Phrase:

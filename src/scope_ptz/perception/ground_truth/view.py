@@ -17,6 +17,9 @@ from scope_ptz.simulator.actors import path_position
 from scope_ptz.simulator.models import Attribute, SceneActor, SceneFile, SceneInstance
 from scope_ptz.simulator.truth import Sighting, TextSighting, ViewTruth
 
+NOTICEABLE_PX = 20
+"""A thing with at most this many visible pixels is not noticed, so it counts as absent."""
+
 Floats = NDArray[np.float64]
 
 PART_WORDS = (
@@ -116,6 +119,8 @@ class View:
     """Nouns that the scene adds to the lexicon."""
     cut_off_text_things: tuple[Thing, ...] = ()
     """Things with legible text that are cut off too much to count as visible, such as a sign larger than the frame."""
+    unclear: tuple[Thing, ...] = ()
+    """Things that are noticeable in the frame, but too small, too hidden or cut off too much to count as visible."""
 
     @cached_property
     def by_id(self) -> dict[str, Thing]:
@@ -143,6 +148,10 @@ class View:
     def with_cut_off_texts(self) -> View:
         """Return a view whose things also include ``cut_off_text_things``, for questions about text."""
         return replace(self, things=(*self.things, *self.cut_off_text_things))
+
+    def with_unclear(self) -> View:
+        """Return a view whose things also include the unclear ones, to find out whether a description may match more things."""
+        return replace(self, things=(*self.things, *self.unclear), unclear=())
 
     def top_level(self) -> tuple[Thing, ...]:
         """Return the things that are not parts of another visible thing."""
@@ -219,6 +228,7 @@ def read_view(truth: ViewTruth, scene: SceneFile, time_s: float) -> View:
         values=facts.values,
         nouns=facts.nouns,
         cut_off_text_things=tuple(thing(x) for x in truth.sightings if not x.visible and x.instance.id in legible),
+        unclear=tuple(thing(x) for x in truth.sightings if not x.visible and x.pixels > NOTICEABLE_PX),
     )
 
 

@@ -24,10 +24,12 @@ from scope_ptz.perception.ground_truth.answers.thing_names import (
     names_with_positions,
     unknown_answer,
 )
+from scope_ptz.perception.ground_truth.answers.unclear import answer_unclear, more_may_be
 from scope_ptz.perception.ground_truth.answers.undecided import undecided_people, undecided_reason, with_plural_sex
 from scope_ptz.perception.ground_truth.answers.vehicle_interiors import answer_about_occupants, asked_vehicle
 from scope_ptz.perception.ground_truth.thing_facts import SEXES, has_item
 from scope_ptz.perception.ground_truth.thing_search import find, find_excluding_wearers, holds, without_waiting
+from scope_ptz.perception.ground_truth.unclear_things import unclear_matches
 from scope_ptz.perception.ground_truth.view import Thing, View
 
 MAX_LISTED = 3
@@ -62,6 +64,8 @@ def answer_exists(view: View, question: tree.Exists) -> TruthAnswer:
     if not matches and undecided_people(view, what):
         return unknown_answer(whether)
     if question.least != 1 or question.most is not None:
+        if unclear := unclear_matches(view, what):
+            return _answer_unclear_bounds(view, question, len(matches), len(unclear))
         yes = question.least <= len(matches) and (question.most is None or len(matches) <= question.most)
         total = len(matches)
         return known_answer(
@@ -69,9 +73,24 @@ def answer_exists(view: View, question: tree.Exists) -> TruthAnswer:
         )
     if not matches and not question.negated and (owner := _owner_of_part(view, question.what)) is not None:
         return known_answer(f"yes, the {coloured_name(owner)} has {english.article(' '.join(question.what.phrases[0].words))}")
+    if not matches and (unclear := answer_unclear(view, question.what)) is not None:
+        return unclear
     if not matches:
         return known_answer(f"{'yes' if question.negated else 'no'}, {none_in_view(view, question.what)}")
     return known_answer(f"{'no' if question.negated else 'yes'}, {describe_matches(view, question.what, matches)}")
+
+
+def _answer_unclear_bounds(view: View, question: tree.Exists, total: int, unclear: int) -> TruthAnswer:
+    """Answer whether there are at least or at most so many things, if only ``total`` of ``total + unclear`` are clearly visible."""
+    counted = f"there {is_or_are(total)} at least {total} {noun_phrase(view, question.what, total != 1)}"
+    if total >= question.least and question.most is None:
+        return known_answer(f"yes, {counted}")
+    if question.most is not None and total > question.most:
+        return known_answer(f"no, {counted}")
+    seen = f"I can make out {'only ' if total else ''}{total or 'no'} {noun_phrase(view, question.what, total != 1)}"
+    if total + unclear < question.least:
+        return known_answer(f"no, {seen}")
+    return unknown_answer(f"I cannot tell: {seen}, but {more_may_be(view, question.what)}")
 
 
 def _owner_of_part(view: View, what: tree.Description) -> Thing | None:
@@ -130,12 +149,15 @@ def answer_count(view: View, question: tree.Count) -> TruthAnswer:
             f"there {is_or_are(total)} at least {total} {noun_phrase(view, description, plural=total != 1)}; "
             f"{undecided_reason(view, description)}"
         )
+    if not total and (unclear := answer_unclear(view, description)) is not None:
+        return unclear
     if len(question.what.phrases) > 1:
         return known_answer(f"there {is_or_are(total)} {total} in view: {_counts_per_phrase(view, question)}")
-    statement = f"{total or 'no'} {noun_phrase(view, question.what, plural=total != 1)}"
+    more = more_may_be(view, description)
+    statement = f"{'at least ' if more else ''}{total or 'no'} {noun_phrase(view, question.what, plural=total != 1)}"
     if question.tests:
-        return known_answer(f"{statement} {predicate_words(view, tests, total)}")
-    return known_answer(f"there {is_or_are(total)} {statement} in view")
+        return known_answer("; ".join(filter(None, [f"{statement} {predicate_words(view, tests, total)}", more])))
+    return known_answer("; ".join(filter(None, [f"there {is_or_are(total)} {statement} in view", more])))
 
 
 def _asks_for_parts(view: View, question: tree.Count) -> bool:

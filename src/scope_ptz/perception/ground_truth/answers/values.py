@@ -26,6 +26,7 @@ from scope_ptz.perception.ground_truth.answers.thing_names import (
     position_words,
     unknown_answer,
 )
+from scope_ptz.perception.ground_truth.answers.unclear import answer_unclear
 from scope_ptz.perception.ground_truth.thing_facts import (
     ABSENT_VALUES,
     COLOUR_KEYS,
@@ -288,6 +289,8 @@ def answer_absent(view: View, subject: tree.Description) -> TruthAnswer:
         return known_answer(none_in_view(view, owner))
     if is_unmodelled_part(view, subject):
         return unknown_answer(f"I cannot tell anything about {definite_as_asked(view, subject)}")
+    if (unclear := answer_unclear(view, subject)) is not None:
+        return unclear
     return known_answer(none_in_view(view, subject))
 
 

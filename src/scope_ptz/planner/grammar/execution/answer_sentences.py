@@ -139,6 +139,11 @@ def counted(description: str, count: int, *, complete: bool = True) -> str:
     return f"{number} {noun(description, count)}"
 
 
+def not_made_out(description: str, place: str) -> str:
+    """Return the statement that a picture shows none of some things clearly, although there may be some."""
+    return f"I cannot make out any {noun(description, 0)} {place}, but there may be some that are too small or hidden"
+
+
 def where(view: str, descriptions: Sequence[str] = ()) -> str:
     """Return the scope of a count in words, after a space; empty if each description already names a part of the view."""
     if view == "full":

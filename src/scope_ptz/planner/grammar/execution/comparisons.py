@@ -42,18 +42,23 @@ class ComparisonSteps(ConditionEvaluation):
     def _tour(self, stops: Sequence[Stop]) -> CallGenerator:
         """Count the same objects at several presets, and report the counts together."""
         seen: list[tuple[ast.Tally, int]] = []
+        unclear: dict[str, list[str]] = {}
         for place, thing in stops:
             yield from self._camera_call("go_to_preset", name=place.name)
             self._record_position(place.name)
             result = yield from self._perception_call("count_objects", description=thing.text, view="current")
             self._last_was_yes = result["count"] > 0 if result is not None else None
-            if result is not None and not result.get("complete", True):
+            if result is not None and not result["count"] and not result.get("complete", True):
+                unclear.setdefault(thing.text, []).append(place.name)
+            elif result is not None and not result.get("complete", True):
                 least = phrases.counted(thing.text, result["count"], complete=False)
                 self._note(f"I can see {least} at {place.name}")
             elif result is not None:
                 seen.append((ast.Tally(thing, place), int(result["count"])))
         if seen:
             self._note(sentences.counts_text([part for part, _ in seen], [count for _, count in seen]))
+        for text, names in unclear.items():
+            self._note(phrases.not_made_out(text, f"at {english.listing(names, 'or')}"))
 
     # Calculations ------------------------------------------------------------------------------------------------------
     def _tallies(self, parts: Sequence[ast.Tally]) -> CallGenerator:

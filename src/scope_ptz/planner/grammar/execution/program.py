@@ -161,7 +161,9 @@ class Program(ReturnSteps, ComparisonSteps):
         for thing in step.things:
             result = yield from self._perception_call("count_objects", description=thing.text, view=view)
             self._last_was_yes = result["count"] > 0 if result is not None else None
-            if result is not None:
+            if result is not None and not result["count"] and not result.get("complete", True):
+                self._note(phrases.not_made_out(thing.text, "from here"))
+            elif result is not None:
                 counted.append(phrases.counted(thing.text, result["count"], complete=result.get("complete", True)))
         if counted:
             self._note(f"I can see {english.listing(counted)}{phrases.where(view, [thing.text for thing in step.things])}")
