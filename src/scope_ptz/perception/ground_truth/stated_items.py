@@ -9,11 +9,32 @@ from __future__ import annotations
 from scope_ptz import english
 from scope_ptz.english.grammar.lexicon import lexicon, nouns_in
 from scope_ptz.english.grammar.questions import question_tree as tree
-from scope_ptz.perception.ground_truth.thing_facts import CLOTHING_KEYS, attribute_has, facts, is_worn, names_of
+from scope_ptz.perception.ground_truth.thing_facts import (
+    CLOTHING_KEYS,
+    attribute_has,
+    facts,
+    is_worn,
+    names_clothes,
+    names_of,
+)
 from scope_ptz.perception.ground_truth.view import Thing, View, concepts_of
 
 _EVERYDAY_CLOTHES = frozenset({"jacket", "trouser"})
 """Clothes that everybody wears, so that a scene does not list them unless it describes the person's clothes."""
+
+
+def as_worn(test: tree.Test) -> tree.Has | None:
+    """Return a test for clothes, however it is worded, as "wearing ...": "with a red jacket", "in red"; None for other tests."""
+    match test:
+        case tree.Has(worn=True):
+            return test
+        case tree.Has(what=what, sold=False) if all(names_clothes(p.words[-1]) for p in what.phrases):
+            return tree.Has(what, worn=True)
+        case tree.Relation(kind="on", other=what, preposition="in") if all(
+            names_clothes(p.words[-1]) or english.COLOURS.issuperset(p.words) for p in what.phrases
+        ):
+            return tree.Has(what, worn=True)
+    return None
 
 
 def is_open_item(view: View, thing: Thing, what: tree.Description, worn: bool) -> bool:

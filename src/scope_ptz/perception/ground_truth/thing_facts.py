@@ -77,9 +77,15 @@ def is_colour(value: object) -> bool:
 
 def is_worn(key: str) -> bool:
     """Return whether an attribute is about clothes. A colour in it is that of the clothes, not that of the person."""
-    return any(
-        lexicon().concept(x) in {"hard hat", "hi-vis vest", "jacket", "trouser", "boot", "glove", "hat"} for x in key_words(key)
-    )
+    return any(map(names_clothes, key_words(key)))
+
+
+_CLOTHES = frozenset({"hard hat", "hi-vis vest", "jacket", "trouser", "boot", "glove", "hat"})
+
+
+def names_clothes(word: str) -> bool:
+    """Return whether a word names a piece of clothing."""
+    return lexicon().concept(word) in _CLOTHES
 
 
 def colour_of(thing: Thing) -> str | None:
@@ -96,6 +102,9 @@ def colour_of(thing: Thing) -> str | None:
     return named[0] if named else None
 
 
+DRIVING = "driving"
+"""What the people do whom a scene models in a vehicle, and the key of the fact that says so. For things, the word means moving."""
+
 SEXES = {"man": "male", "gentleman": "male", "guy": "male", "woman": "female", "lady": "female"}
 """The sex that a noun for a person states."""
 
@@ -103,6 +112,18 @@ SEXES = {"man": "male", "gentleman": "male", "guy": "male", "woman": "female", "
 def stated_sex(thing: Thing) -> str | None:
     """Return "male" or "female" if the name of a person states it; None if it does not."""
     return next((SEXES[word] for word in english.letters(thing.name).split() if word in SEXES), None)
+
+
+def sex_fits(thing: Thing, noun: str) -> bool | None:
+    """Return whether a person has the sex that a noun such as "women" states; None if the scene does not state their sex."""
+    sex = stated_sex(thing)
+    return None if sex is None else sex == SEXES[singular_phrase(noun)]
+
+
+def is_sexed(words: Sequence[str]) -> bool:
+    """Return whether words are a noun that states a person's sex, and nothing else: "a woman", "men"."""
+    nouns = [x for x in words if x not in FILLER_WORDS]
+    return len(nouns) == 1 and singular_phrase(nouns[0]) in SEXES
 
 
 def fits_noun(view: View, thing: Thing, noun: str) -> bool:
@@ -149,11 +170,14 @@ def _word_fits(view: View, thing: Thing, word: str) -> bool | None:
     if word.startswith("non-"):
         answer = _word_fits(view, thing, word.removeprefix("non-"))
         return None if answer is None else not answer
+    is_person = "person" in thing.concepts
+    if is_person and word == DRIVING:
+        return True if DRIVING in thing.attributes else None  # nobody can see into every vehicle
     thing_words = fact_words(thing)
     canonical_word = canonical_form(word)
     if _word_forms(word) & {f for x in thing_words for f in _word_forms(x)} or fits_noun(view, thing, word):
         return True
-    if lexicon().concept(word) is not None and "person" in thing.concepts and has_item(view, thing, [word]):
+    if lexicon().concept(word) is not None and is_person and has_item(view, thing, [word]):
         return True
     if _is_context_word(view, thing, word) or any(english.letters(word) in english.letters(text).split() for text in thing.texts):
         return True
@@ -161,12 +185,14 @@ def _word_fits(view: View, thing: Thing, word: str) -> bool | None:
         return False
     if canonical_word in english.COLOURS and colour_of(thing) is not None:
         return False
-    if canonical_word == "waiting" and "person" in thing.concepts:
+    if canonical_word == "waiting" and is_person:
         return None  # a person who stands or sits may be waiting
     if canonical_word in {"empty", "full"} and "vehicle" in thing.concepts:
         return None  # nobody can see into a vehicle
     if any(_word_forms(word) & domain and key in thing.attributes for key, domain in view.values.items() if key not in TEXT_KEYS):
         return False
+    if is_person and word.endswith("ing"):
+        return None  # what people do is seldom stated, even if the word also names a thing: "crossing"
     return False if lexicon().concept(word) else None
 
 

@@ -33,7 +33,7 @@ from scope_ptz.perception.ground_truth.relations import (
     relation_holds,
     visible_pixels,
 )
-from scope_ptz.perception.ground_truth.stated_items import is_open_item
+from scope_ptz.perception.ground_truth.stated_items import as_worn, is_open_item
 from scope_ptz.perception.ground_truth.thing_facts import (
     colour_of,
     facts,
@@ -41,6 +41,8 @@ from scope_ptz.perception.ground_truth.thing_facts import (
     fits_words,
     has_item,
     has_text,
+    is_sexed,
+    sex_fits,
 )
 from scope_ptz.perception.ground_truth.view import Thing, View
 from scope_ptz.perception.ground_truth.vocabulary import FILLER_WORDS, IGNORABLE_WORDS
@@ -244,13 +246,18 @@ def holds(view: View, thing: Thing, test: tree.Test) -> bool | None:
         case tree.Any(tests=tests):
             answers = [holds(view, thing, t) for t in tests]
             return True if True in answers else None if None in answers else False
+        case tree.Is(words=words) if "person" in thing.concepts and is_sexed(words):
+            return sex_fits(thing, next(x for x in words if x not in FILLER_WORDS))
         case tree.Is(words=words):
             answer = fits_words(view, thing, words)
             return True if answer is None and all(_is_ignorable(view, thing, x) for x in words) else answer
         case tree.Says(words=words):
             return has_text(thing, words) or (len(words) == 1 and is_facing(thing, words[0]) is True)
         case tree.Has(what=what, worn=worn):
-            return _has(view, thing, what) or (None if is_open_item(view, thing, what, worn) else False)
+            is_open = is_open_item(view, thing, what, worn or ("person" in thing.concepts and as_worn(test) is not None))
+            return _has(view, thing, what) or (None if is_open else False)
+        case tree.Relation() if "person" in thing.concepts and (clothes := as_worn(test)) is not None:
+            return _holds_in_space(view, thing, test) or holds(view, thing, clothes)
         case tree.Faces(side=side):
             return is_facing(thing, side)
         case tree.Order():

@@ -64,8 +64,8 @@ def answer_exists(view: View, question: tree.Exists) -> TruthAnswer:
     if not matches and undecided_people(view, what):
         return unknown_answer(whether)
     if question.least != 1 or question.most is not None:
-        if unclear := unclear_matches(view, what):
-            return _answer_unclear_bounds(view, question, len(matches), len(unclear))
+        if possible := unclear_matches(view, what):
+            return _answer_unclear_bounds(view, question, len(matches), len(possible))
         yes = question.least <= len(matches) and (question.most is None or len(matches) <= question.most)
         total = len(matches)
         return known_answer(
@@ -141,14 +141,18 @@ def answer_count(view: View, question: tree.Count) -> TruthAnswer:
         return unknown_answer(how_many)
     if not total and (vehicle := asked_vehicle(view, description)) is not None:
         return answer_about_occupants(view, description, vehicle, is_yes_no=False)
-    is_open = any(holds(view, t, test) is None for t in find(view, question.what) for test in tests if isinstance(test, tree.Has))
+    is_open = any(
+        holds(view, t, test) is None
+        for t in find(view, question.what)
+        for test in tests
+        if isinstance(test, tree.Has) or (isinstance(test, tree.Is) and "person" in t.concepts)
+    )
     if not total and (open_number or is_open or _asks_for_parts(view, question)):
         return unknown_answer(_how_many_parts(view, question) or how_many)
     if open_number:
-        return known_answer(
-            f"there {is_or_are(total)} at least {total} {noun_phrase(view, description, plural=total != 1)}; "
-            f"{undecided_reason(view, description)}"
-        )
+        least = f"at least {total} {noun_phrase(view, question.what, plural=total != 1)}"
+        statement = f"{least} {predicate_words(view, tests, total)}" if tests else f"there {is_or_are(total)} {least}"
+        return known_answer(f"{statement}; {undecided_reason(view, description)}")
     if not total and (unclear := answer_unclear(view, description)) is not None:
         return unclear
     if len(question.what.phrases) > 1:

@@ -6,10 +6,11 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from scope_ptz import english
-from scope_ptz.english.grammar.lexicon import lexicon, nouns_in
+from scope_ptz.english.grammar.lexicon import lexicon, nouns_in, singular_phrase
 from scope_ptz.english.grammar.questions import question_tree as tree
 from scope_ptz.english.numerals import ORDINALS
 from scope_ptz.perception.ground_truth.relations import BACKGROUND_CONCEPTS
+from scope_ptz.perception.ground_truth.thing_facts import is_sexed
 from scope_ptz.perception.ground_truth.thing_search import split_after_noun
 from scope_ptz.perception.ground_truth.view import View
 
@@ -182,15 +183,22 @@ def _plain_test_words(view: View, test: tree.Test) -> str:
             return ""
 
 
-def _item_phrases(what: tree.Description, count: int = 1) -> str:
-    """Return parts or clothes with their articles: "helmets" for several people, "a helmet" for one person."""
+def _item_phrases(what: tree.Description, count: int | None = None) -> str:
+    """Return parts or clothes with their articles: "helmets" for several people, "a helmet" for one; by default, as asked."""
     return english.listing([_item_phrase(" ".join(p.words), p.words[-1] in _PRONOUNS, count) for p in what.phrases])
 
 
-def _item_phrase(words: str, is_pronoun: bool, count: int) -> str:
-    if is_pronoun or english.is_plural(words.split()[-1]) or words.split()[-1] in english.COLOURS:
+def _item_phrase(words: str, is_pronoun: bool, count: int | None) -> str:
+    last = words.split()[-1]
+    if count == 1 and lexicon().concept(last) in _ONE_EACH:
+        return english.article(singular_phrase(words))  # one of the people has "a bag", although the question is about bags
+    if is_pronoun or english.is_plural(last) or last in english.COLOURS:
         return words  # "wearing red"
-    return english.article(words) if count == 1 else english.plural(words)
+    return english.plural(words) if count is not None and count != 1 else english.article(words)
+
+
+_ONE_EACH = frozenset({"bag", "backpack", "umbrella", "hard hat", "hi-vis vest", "jacket", "hat"})
+"""Items of which a person has one."""
 
 
 def predicate_words(view: View, tests: Sequence[tree.Test], count: int, negated: bool = False) -> str:
@@ -221,6 +229,9 @@ def _predicate_of_test(view: View, test: tree.Test, count: int, negated: bool) -
             return f"{_verb_form('bear', 'bears', count, negated)} text that I can read"
         case tree.Says(words=words):
             return f'{_verb_form("say", "says", count, negated)} "{" ".join(words).upper()}"'
+        case tree.Is(words=words) if is_sexed(words):
+            noun = english.singular(words[-1])
+            return f"{_form_of_be(count, negated)} {english.article(noun) if count == 1 else english.plural(noun)}"
         case tree.Is(words=words) if words and english.is_plural(words[-1]) is False and words[-1] in _PREDICATE_NOUNS:
             return f"{_form_of_be(count, negated)} {english.article(' '.join(words))}"
         case _:

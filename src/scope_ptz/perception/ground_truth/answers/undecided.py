@@ -12,7 +12,8 @@ from scope_ptz import english
 from scope_ptz.english.grammar.lexicon import singular_phrase
 from scope_ptz.english.grammar.questions import question_tree as tree
 from scope_ptz.perception.ground_truth.answers.restating import words_after_noun
-from scope_ptz.perception.ground_truth.thing_facts import SEXES, fits_words, stated_sex
+from scope_ptz.perception.ground_truth.stated_items import as_worn
+from scope_ptz.perception.ground_truth.thing_facts import SEXES, fits_words, is_sexed, stated_sex
 from scope_ptz.perception.ground_truth.thing_search import find, find_phrase, holds, is_place
 from scope_ptz.perception.ground_truth.view import Thing, View
 
@@ -30,7 +31,7 @@ def undecided_words(view: View, description: tree.Description) -> str:
     for phrase in description.phrases:
         if _candidates(view, phrase):
             sexed = _sexed_noun(phrase)
-            return english.article(singular_phrase(sexed)) if sexed else _worn_words(view, phrase) or WAITING
+            return english.article(singular_phrase(sexed)) if sexed else _open_words(view, phrase) or WAITING
     return ""
 
 
@@ -51,19 +52,28 @@ def _candidates(view: View, phrase: tree.Phrase) -> list[Thing]:
     if sexed:
         wider = replace(phrase, words=tuple("people" if x == sexed else x for x in phrase.words))
         return [t for t in find_phrase(view, wider) if stated_sex(t) is None]
-    if any(isinstance(t, tree.Has) and t.worn for t in phrase.tests):
-        wearing = [t for t in phrase.tests if isinstance(t, tree.Has) and t.worn]
-        wider = replace(phrase, tests=tuple(t for t in phrase.tests if t not in wearing))
-        return [t for t in find_phrase(view, wider) if any(holds(view, t, test) is None for test in wearing)]
+    open_tests = [t for t in phrase.tests if _may_be_open(t)]
+    if open_tests:
+        wider = replace(phrase, tests=tuple(t for t in phrase.tests if t not in open_tests))
+        return [
+            t
+            for t in find_phrase(view, wider)
+            if "person" in t.concepts and any(holds(view, t, test) is None for test in open_tests)
+        ]
     wider = _without_waiting(phrase)
     if wider == phrase or any(is_place(t) for t in phrase.tests):
         return []
     return [t for t in find_phrase(view, wider) if "person" in t.concepts and fits_words(view, t, [WAITING]) is None]
 
 
-def _worn_words(view: View, phrase: tree.Phrase) -> str:
-    """Return what a phrase says that people wear ("wearing red"); empty if it says nothing about that."""
-    return next((words_after_noun(view, t) for t in phrase.tests if isinstance(t, tree.Has) and t.worn), "")
+def _may_be_open(test: tree.Test) -> bool:
+    """Return whether a test is for people's clothes or their sex, which the scene may leave open."""
+    return as_worn(test) is not None or (isinstance(test, tree.Is) and is_sexed(test.words))
+
+
+def _open_words(view: View, phrase: tree.Phrase) -> str:
+    """Return what a phrase says about people's clothes or sex in its tests ("wearing red"); empty if it says nothing about them."""
+    return next((words_after_noun(view, as_worn(t) or t) for t in phrase.tests if _may_be_open(t)), "")
 
 
 def with_plural_sex(description: tree.Description) -> tree.Description:

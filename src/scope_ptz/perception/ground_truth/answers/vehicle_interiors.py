@@ -14,6 +14,7 @@ from scope_ptz.perception.ground_truth.answers.thing_names import (
     position_words,
     unknown_answer,
 )
+from scope_ptz.perception.ground_truth.stated_items import as_worn
 from scope_ptz.perception.ground_truth.thing_facts import ABSENT_VALUES
 from scope_ptz.perception.ground_truth.thing_search import INSIDE, find
 from scope_ptz.perception.ground_truth.view import Thing, View
@@ -33,7 +34,9 @@ def asked_vehicle(view: View, description: tree.Description) -> tree.Description
         return None
     driven = driven_vehicle(phrase)
     inside = [
-        t.other for t in phrase.tests if isinstance(t, tree.Relation) and t.kind == "on" and t.preposition in {*INSIDE, "of", ""}
+        t.other
+        for t in phrase.tests
+        if isinstance(t, tree.Relation) and t.kind == "on" and t.preposition in {*INSIDE, "of", ""} and as_worn(t) is None
     ]
     if driven is not None and names_vehicle(driven):
         return driven  # if it is not in view, the answer says so

@@ -9,6 +9,7 @@ from scope_ptz import english
 from scope_ptz.english.grammar.common_nouns import is_common_noun
 from scope_ptz.english.grammar.lexicon import nouns_in
 from scope_ptz.english.grammar.questions import question_tree as tree
+from scope_ptz.english.grammar.questions.ambiguity import is_person
 from scope_ptz.perception.ground_truth.answers.counted_things import add_tests, answer_exists
 from scope_ptz.perception.ground_truth.answers.restating import (
     definite_as_asked,
@@ -21,6 +22,7 @@ from scope_ptz.perception.ground_truth.answers.restating import (
     unmodelled_place,
     words_after_noun,
 )
+from scope_ptz.perception.ground_truth.answers.sexes import answer_sex, answer_which_sex
 from scope_ptz.perception.ground_truth.answers.thing_names import (
     TruthAnswer,
     coloured_name,
@@ -39,6 +41,7 @@ from scope_ptz.perception.ground_truth.thing_facts import (
     fact_words,
     fits_noun,
     has_form_in,
+    is_sexed,
 )
 from scope_ptz.perception.ground_truth.thing_search import find, holds, is_place, split_after_numbered_noun, without_waiting
 from scope_ptz.perception.ground_truth.view import Thing, View
@@ -50,6 +53,8 @@ _EVERYBODY_WORDS = frozenset(["everyone", "everybody", "everything", "they"])
 
 def answer_yes_no(view: View, question: tree.YesNo) -> TruthAnswer:
     """Answer whether the tests hold for the subject."""
+    if (sex := answer_which_sex(view, question) or _answer_about_sex(view, question)) is not None:
+        return sex
     whole = add_tests(question.subject, question.tests)
     if (vehicle := asked_vehicle(view, whole)) is not None and not find(view, whole):
         return answer_about_occupants(view, whole, vehicle)
@@ -87,6 +92,15 @@ def answer_yes_no(view: View, question: tree.YesNo) -> TruthAnswer:
     if choice is not None:
         return choice
     return _answer_verdict(view, scope, subject, tests, things, [t for t, answer in zip(things, answers, strict=True) if answer])
+
+
+def _answer_about_sex(view: View, question: tree.YesNo) -> TruthAnswer | None:
+    """Answer "are all the people women?", in which the subject includes the predicate; None for other questions."""
+    (phrase, *others) = question.subject.phrases
+    people, noun = phrase.words[:-1], phrase.words[-1:]
+    if others or question.tests or not is_sexed(noun) or not is_person(people):
+        return None
+    return answer_sex(view, tree.Description((replace(phrase, words=people),)), *noun)
 
 
 def _parts_of_whole(subject: tree.Description) -> tree.Description | None:
@@ -352,6 +366,9 @@ def _actual_value(view: View, test: tree.Test, things: list[Thing]) -> str | Non
 
 def answer_is_a(view: View, question: tree.IsA) -> TruthAnswer:
     """Answer whether a thing is of a kind."""
+    kind = question.what.phrases[0]
+    if is_sexed(kind.words) and not kind.tests and (sex := answer_sex(view, question.subject, kind.words[-1])) is not None:
+        return sex
     things = find(view, question.subject)
     if not things:
         return unknown_answer(f"I cannot tell: {none_in_view(view, question.subject)}")
