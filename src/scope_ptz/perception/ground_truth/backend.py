@@ -115,6 +115,7 @@ class GroundTruthPerception(Perception):
             asks_for_judgement,
             find_unknown_nouns,
             find_unknown_qualities,
+            has_unresolved_item,
             is_english_noun,
         )
 
@@ -127,6 +128,8 @@ class GroundTruthPerception(Perception):
             raise NotUnderstoodError(
                 f"The question '{question}' is not understood. Ask one question about what the picture shows, in plain words."
             )
+        if has_unresolved_item(parsed):
+            raise NotUnderstoodError("I did not understand 'one' in the question. Name a kind of thing.")
         reply = answer(view, parsed)
         if reply.text.startswith(_ABSENCE_BEGINNINGS) and (unknown := find_unknown_nouns(view, parsed)):
             raise NotUnderstoodError(f"I did not understand {_quote_list(unknown)} in the question. Name a kind of thing.")

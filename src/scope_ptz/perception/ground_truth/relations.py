@@ -4,7 +4,7 @@
 overlap horizontally, with a tolerance of a tenth of the frame.
 - *behind / in front of*: further from / nearer to the camera by half a metre or more, and the boxes overlap horizontally, with a
 tolerance of a twentieth of the frame.
-- *near, next to, facing*: at most 4 m apart in the world, and neither is a part of the other.
+- *near, next to, facing*: at most 4 m apart in the world; a part that touches or overlaps its whole is not near it.
 - *on, in, at, of*: a part of the other thing, or smaller, within its footprint and resting on or in it.
 - *on the left*: the centre lies in the left 40% of the frame; *in the left half*: in the left 50%; *in a corner*: in the 40% bands
 of both sides; *in the middle*: in the middle 40% horizontally, but not in the top or
@@ -75,7 +75,7 @@ def relation_holds(view: View, a: Thing, kind: tree.RelationKind, b: Thing) -> b
         case "behind":
             return not is_part and a.distance_m >= b.distance_m + DEPTH_STEP_M and _overlap_horizontally(a, b, SIDE_TOLERANCE)
         case "near" | "facing":
-            return not is_part and a.gap_m(b) <= NEAR_M
+            return a.gap_m(b) <= NEAR_M and (not is_part or a.gap_m(b) > 0)  # the signal beside a dock door, which is its part
         case "on":
             return view.belongs(a.id, b.id) or _rests_on(a, b)
 

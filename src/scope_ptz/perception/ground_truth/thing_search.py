@@ -58,7 +58,8 @@ def find(view: View, description: tree.Description) -> list[Thing]:
     matches = find_excluding_wearers(view, description)
     if matches or len(description.phrases) != 1:
         return matches
-    return find_by_full_name(view, description.phrases[0]) or _find_wearers(view, description.phrases[0])
+    (phrase,) = description.phrases
+    return find_by_full_name(view, phrase) or _find_wearers(view, phrase)
 
 
 def find_excluding_wearers(view: View, description: tree.Description) -> list[Thing]:
@@ -68,7 +69,21 @@ def find_excluding_wearers(view: View, description: tree.Description) -> list[Th
         return matches
     for phrase in description.phrases:
         matches += [t for t in find_phrase(view, phrase) if t not in matches]
-    return matches if len(description.phrases) == 1 else sorted(matches, key=visible_pixels, reverse=True)
+    if len(description.phrases) == 1:
+        return matches or _find_compound(view, description.phrases[0])
+    return sorted(matches, key=visible_pixels, reverse=True)
+
+
+def _find_compound(view: View, phrase: tree.Phrase) -> list[Thing]:
+    """Return "raised barrier arms" for "raised barriers", if only things of a compound name have such a state."""
+    head, after = split_after_noun(view, phrase.words)
+    states = {*head[:-1], *after, *(x for t in phrase.tests if isinstance(t, tree.Is) for x in t.words)}
+    if not states or states & english.COLOURS:
+        return []
+    for category in dict.fromkeys(t.category for t in view.things if t.category.startswith(f"{english.singular(head[-1])} ")):
+        if matches := find_phrase(view, replace(phrase, words=(*head[:-1], *category.split(), *after))):
+            return matches
+    return []
 
 
 def _find_wearers(view: View, phrase: tree.Phrase) -> list[Thing]:

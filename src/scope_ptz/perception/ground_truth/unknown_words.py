@@ -18,6 +18,20 @@ from scope_ptz.perception.ground_truth.vocabulary import FILLER_WORDS, IGNORABLE
 _PRONOUNS = frozenset({("it",), ("them",)})
 """Pronouns that cannot refer to anything, because no sentence precedes a question about a picture."""
 
+_ONE = frozenset({"one", "ones"})
+
+
+def has_unresolved_item(node: Any) -> bool:
+    """Return whether a question asks for an item that only an earlier sentence names: "who is not wearing one?"."""
+    if isinstance(node, tuple):
+        return any(map(has_unresolved_item, node))
+    if not is_dataclass(node):
+        return False
+    if isinstance(node, tree.Has) and any(set(p.words) <= _ONE for p in node.what.phrases):
+        return True
+    return any(has_unresolved_item(getattr(node, field.name)) for field in fields(node))
+
+
 _JUDGEMENT = re.compile(
     r"\b(?:everything|everyone|everybody|all|it|things|they)\s+(?:still\s+)?(?:ok|okay|alright|all right|fine|in order|normal"
     r"|under control)\W*$",

@@ -260,7 +260,13 @@ def concepts_of(instance: SceneInstance | SceneActor) -> frozenset[str]:
         if concept := table.concept(noun):
             concepts |= table.kinds(concept)
             break
+    for concept in concepts & _ALSO_SEEN_AS.keys():
+        concepts |= table.kinds(_ALSO_SEEN_AS[concept])
     return frozenset(concepts or {"thing"})
+
+
+_ALSO_SEEN_AS = {"dock light": "traffic light"}
+"""Other concepts of which things look like one: a light that shows drivers red or green is a traffic light to whoever sees it."""
 
 
 def _world_box(instance: SceneInstance | SceneActor, time_s: float) -> tuple[Floats, Floats]:

@@ -155,6 +155,8 @@ def answer_count(view: View, question: tree.Count) -> TruthAnswer:
         return known_answer(f"{statement}; {undecided_reason(view, description)}")
     if not total and (unclear := answer_unclear(view, description)) is not None:
         return unclear
+    if not total and len(question.what.phrases) > 1:
+        return known_answer(none_in_view(view, description))
     if len(question.what.phrases) > 1:
         return known_answer(f"there {is_or_are(total)} {total} in view: {_counts_per_phrase(view, question)}")
     more = more_may_be(view, description)

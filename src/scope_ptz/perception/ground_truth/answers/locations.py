@@ -137,6 +137,8 @@ def _answer_listed(view: View, question: tree.What) -> TruthAnswer:
 
 def _answer_no_match(view: View, question: tree.What, description: tree.Description) -> TruthAnswer:
     """Answer if nothing matches: with a fact that the scene states ("which lane is closed?"), or by saying that nothing matches."""
+    if (vehicle := asked_vehicle(view, description)) is not None:
+        return answer_about_occupants(view, description, vehicle, is_yes_no=False)
     state_words = [x for t in question.tests if isinstance(t, tree.Is) for x in t.words]
     if state_words and not find(view, question.what):
         return answer_fact_in_view(view, (*question.what.phrases[0].words, *state_words))
@@ -152,8 +154,6 @@ def _answer_no_match(view: View, question: tree.What, description: tree.Descript
         if places and nouns_in(places[0].phrases[0].words, view.nouns):
             return answer_absent(view, places[0])
         return known_answer(f"I can see nothing {' '.join(words_after_noun(view, t) for t in question.tests)}")
-    if (vehicle := asked_vehicle(view, description)) is not None:
-        return answer_about_occupants(view, description, vehicle, is_yes_no=False)
     if reason := undecided_reason(view, description):
         return unknown_answer(reason)
     return answer_absent(view, description)
@@ -214,6 +214,8 @@ def answer_kind_of(view: View, question: tree.KindOf) -> TruthAnswer:
 
 def answer_identify(view: View, question: tree.Identify) -> TruthAnswer:
     """Answer what a thing is. If the words name a fact ("the speed limit"), answer with that fact."""
+    if (vehicle := asked_vehicle(view, question.what)) is not None:
+        return answer_about_occupants(view, question.what, vehicle, is_yes_no=False)
     phrase = question.what.phrases[0]
     fact = answer_fact_in_view(view, phrase.words)
     has_only_on_tests = all(isinstance(t, tree.Relation) and t.kind == "on" for t in phrase.tests)

@@ -52,9 +52,9 @@ def answer_which_sex(view: View, question: tree.YesNo) -> TruthAnswer | None:
     """Answer "is a man or a woman holding it?" and "is the driver a man or a woman?"; None for other questions."""
     phrases = question.subject.phrases
     last = phrases[-1]
-    doing = (tree.Is(last.words[1:]),) if last.words[1:] else ()  # the parser reads "a woman pushing the pram" as one name
-    match question.tests:
-        case tests if (tests or doing) and len(phrases) == 2 and all(is_sexed(p.words[:1]) for p in phrases):
+    doing, tests = _split_activity(last.words[1:], question.tests)
+    match tests:
+        case _ if (tests or doing) and len(phrases) == 2 and all(is_sexed(p.words[:1]) for p in phrases):
             people = tree.Description((tree.Phrase(("person",), (*doing, *tests)),))
             either = english.listing([english.article(p.words[0]) for p in phrases], "or")
             missing = f"I cannot tell whether {either} {predicate_words(view, (*doing, *tests), 1)}"
@@ -74,6 +74,18 @@ def answer_which_sex(view: View, question: tree.YesNo) -> TruthAnswer | None:
     if len(matches) == 1:
         return known_answer(f"it is {english.article(next(iter(counts)))}")
     return known_answer(f"there are {english.listing([english.counted(n, noun) for noun, n in counts.items()])}")
+
+
+def _split_activity(words: tree.Words, tests: tuple[tree.Test, ...]) -> tuple[tuple[tree.Test, ...], tuple[tree.Test, ...]]:
+    """Return the test in "a woman pushing the pram", and the other tests.
+
+    The parser reads "woman pushing" as a name and the pram as a state, but the question is whether she has a pram.
+    """
+    if len(words) == 1 and words[0].endswith("ing") and tests and isinstance(tests[0], tree.Is):
+        words, tests = (*words, *tests[0].words), tests[1:]
+    if len(words) > 1 and words[0].endswith("ing"):
+        return (tree.Has(tree.Description((tree.Phrase(words[1:]),))),), tests
+    return ((tree.Is(words),) if words else ()), tests
 
 
 def _is_sex(test: tree.Test) -> bool:

@@ -33,6 +33,7 @@ from scope_ptz.perception.ground_truth.thing_facts import (
     colour_of,
     fact_words,
     facts,
+    is_colour,
     is_worn,
     key_words,
     names_of,
@@ -64,7 +65,7 @@ def answer_attribute(view: View, question: tree.Ask) -> TruthAnswer:
         return answer_fact_in_view(view, question.attribute)
     matches = find(view, question.what)
     if not matches:
-        return _answer_about_part(view, question) or answer_absent(view, question.what)
+        return _answer_about_part(view, question) or _answer_about_unmodelled(view, question) or answer_absent(view, question.what)
     if question.attribute[-1] in COLOUR_KEYS and (answer := _answer_about_worn(view, question.what, matches)) is not None:
         return answer
     values = [(t, value_of(t, question.attribute)) for t in matches]
@@ -95,10 +96,11 @@ def answer_attribute(view: View, question: tree.Ask) -> TruthAnswer:
         return known_answer(
             english.listing([f"{determiner} {thing} is {prefix}{v}" for thing, (_, v) in zip(things, stated, strict=True)])
         )
-    return known_answer(
-        f"{len(stated)} {noun_phrase(view, question.what, plural=True)}: "
-        + english.listing([f"{n} {prefix}{v}" for v, n in distinct.most_common()])
-    )
+    total, kind = len(matches), noun_phrase(view, question.what, plural=True)
+    shares = english.listing([f"{n} {is_or_are(n)} {prefix}{v}" for v, n in distinct.most_common()])
+    others = total - len(stated)
+    rest = f"; I cannot tell for the other {'one' if others == 1 else others}" if others else ""
+    return known_answer(f"of the {total} {kind}, {shares}{rest}")
 
 
 def _goods_sentence(view: View, what: tree.Description, goods: Counter[str]) -> TruthAnswer:
@@ -146,7 +148,7 @@ _VALUE_PREFIXES = {
 _ACTIVITY_PHRASES = {
     "stand": "standing", "walk": "walking", "kneel": "kneeling", "shovel": "shovelling", "carry": "carrying something",
     "point": "pointing", "phone": "talking on the phone", "clipboard": "holding a clipboard", "sit": "sitting", "run": "running",
-    "work": "working", "wave": "waving", "dig": "digging", "drive": "driving",
+    "sweep": "sweeping", "work": "working", "wave": "waving", "dig": "digging", "drive": "driving",
 }  # fmt: skip
 
 
@@ -199,7 +201,16 @@ def _answer_about_part(view: View, question: tree.Ask) -> TruthAnswer | None:
     if question.what is None or not (set(question.attribute) & _FACTS_OF_PARTS):
         return None
     matches = part_values(view, question.what)
+    if question.attribute[-1] in COLOUR_KEYS:
+        matches = [(t, value) for t, value in matches if is_colour(value)]
     return _part_sentence(english.singular(question.what.phrases[0].words[-1]), matches) if matches else None
+
+
+def _answer_about_unmodelled(view: View, question: tree.Ask) -> TruthAnswer | None:
+    """Answer that one fact about a part is unknown, of which others may be stated: "the colour of the load of the forklift"."""
+    if question.what is None or not is_unmodelled_part(view, question.what) or _missing_owner(view, question.what) is not None:
+        return None
+    return unknown_answer(f"I cannot tell the {' '.join(question.attribute)} of {definite_as_asked(view, question.what)}")
 
 
 _FACTS_OF_PARTS = {*COLOUR_KEYS, *_KEY_SYNONYMS["state"], *_KEY_SYNONYMS["material"]}
@@ -223,10 +234,28 @@ def _part_sentence(part: str, matches: Sequence[tuple[Thing, str]]) -> TruthAnsw
     if len(values) == 1:
         return known_answer(f"{'both' if len(matches) == 2 else f'all {len(matches)}'} {english.plural(part)} are {matches[0][1]}")
     if len(matches) > _MAX_OWNERS:
-        return known_answer(
-            f"{len(matches)} {english.plural(part)}: {english.listing([f'{n} {v}' for v, n in values.most_common()])}"
-        )
-    return known_answer(english.listing([f"the {part} of the {t.category} {position_words(t)} is {v}" for t, v in matches]))
+        shares = english.listing([f"{n} {is_or_are(n)} {v}" for v, n in values.most_common()])
+        return known_answer(f"of the {len(matches)} {english.plural(part)}, {shares}")
+    return known_answer(english.listing(_values_by_owner(part, matches)))
+
+
+def _values_by_owner(part: str, matches: Sequence[tuple[Thing, str]]) -> list[str]:
+    """Return the value of each owner's part. Owners that only their position would tell apart, and does not, share a statement."""
+    owners: dict[tuple[str, str], list[str]] = {}
+    for thing, value in matches:
+        owners.setdefault((thing.category, position_words(thing)), []).append(value)
+    statements = []
+    for (category, position), stated in owners.items():
+        if len(stated) == 1:
+            statements.append(f"the {part} of the {category} {position} is {stated[0]}")
+        elif len(set(stated)) == 1:
+            statements.append(
+                f"the {english.plural(part)} of the {len(stated)} {english.plural(category)} {position} are {stated[0]}"
+            )
+        else:
+            parts = f"the {english.plural(part)} of the {len(stated)} {english.plural(category)} {position}"
+            statements.append(f"{parts} are {english.listing(stated)}")
+    return statements
 
 
 _MAX_OWNERS = 4

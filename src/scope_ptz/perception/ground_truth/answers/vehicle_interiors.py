@@ -30,7 +30,7 @@ _PASSENGERS = frozenset({"passenger", "passengers"})
 def asked_vehicle(view: View, description: tree.Description) -> tree.Description | None:
     """Return the vehicle whose occupants a description names ("a driver in the taxi", "anyone driving the taxi"), or None."""
     (phrase, *others) = description.phrases
-    if others or not phrase.words or not (is_person(phrase.words[:1]) or phrase.words[0] in _PASSENGERS):
+    if others or not phrase.words or not (is_person(phrase.words[:1]) or phrase.words[0] in _PASSENGERS | _DRIVING):
         return None
     driven = driven_vehicle(phrase)
     inside = [
@@ -73,7 +73,7 @@ def answer_about_occupants(
     if not vehicles and names_vehicle(vehicle):
         return known_answer(none_in_view(view, vehicle))
     occupants = [t for t in view.things if t.parent in {v.id for v in vehicles} and "person" in t.concepts]
-    if occupants and asked in _DRIVERS | _ANYONE:
+    if occupants and asked in _DRIVERS | _ANYONE | _DRIVING:
         yes = "yes, " if is_yes_no else ""
         return known_answer(f"{yes}there is {english.article(coloured_name(occupants[0]))} {position_words(occupants[0])}")
     stated = {str(v.attributes.get("driver", "")).lower() for v in vehicles}

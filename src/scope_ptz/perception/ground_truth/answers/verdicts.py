@@ -32,9 +32,10 @@ from scope_ptz.perception.ground_truth.answers.thing_names import (
     unknown_answer,
 )
 from scope_ptz.perception.ground_truth.answers.undecided import undecided_people, undecided_words
-from scope_ptz.perception.ground_truth.answers.values import answer_absent, is_unmodelled_part, part_values
+from scope_ptz.perception.ground_truth.answers.values import answer_absent, is_unmodelled_part, part_values, value_of
 from scope_ptz.perception.ground_truth.answers.vehicle_interiors import answer_about_occupants, asked_vehicle
 from scope_ptz.perception.ground_truth.thing_facts import (
+    ABSENT_VALUES,
     TEXT_KEYS,
     colour_of,
     contains_words,
@@ -294,6 +295,8 @@ def _answer_verdict(
         things: The things in question.
         matches: Those of ``things`` for which the tests hold.
     """
+    if (carried := _answer_carried(view, subject, tests, things)) is not None:
+        return carried
     total, plural_noun = len(things), noun_phrase(view, subject, plural=True)
     if any(p.words[-1] in _EVERYBODY_WORDS for p in subject.phrases if p.words):
         scope = "all"
@@ -309,8 +312,33 @@ def _answer_verdict(
         return known_answer(f"yes, {every} {predicate_words(view, tests, total)}")
     if scope == "all" or (is_plural(subject) and not asks_any):
         return known_answer(f"no, only {share}")
-    where = f": the one {position_words(matches[0])}" if len(matches) == 1 else ""
+    where = f": {_one_words(matches[0])}" if len(matches) == 1 else ""
     return known_answer(f"yes, {share}{where}")
+
+
+def _one_words(thing: Thing) -> str:
+    """Return which of several things one is. A side in its name ("middle door") may differ from its side of the picture."""
+    if not set(thing.name.lower().split()) & _SIDES_IN_NAMES:
+        return f"the one {position_words(thing)}"
+    return f"the {thing.name}, {position_words(thing)} of the picture"
+
+
+_SIDES_IN_NAMES = frozenset({"left", "right", "middle", "centre", "upper", "lower", "front", "rear"})
+
+
+def _answer_carried(view: View, subject: tree.Description, tests: tuple[tree.Test, ...], things: list[Thing]) -> TruthAnswer | None:
+    """Answer "is the forklift carrying anything?" with what it carries; None for other questions, and about several things."""
+    if len(things) != 1 or len(tests) != 1 or not isinstance(tests[0], tree.Has):
+        return None
+    if any(len(p.words) != 1 or p.words[0] not in _ANYBODY_WORDS for p in tests[0].what.phrases):
+        return None
+    (thing,) = things
+    load = value_of(thing, ("carrying",))
+    if load is None:
+        return None
+    if load in ABSENT_VALUES:
+        return known_answer(f"no, {definite_phrase(view, subject)} is carrying nothing")
+    return known_answer(f"yes, {definite_phrase(view, subject)} is carrying {load}")
 
 
 def _all_words(total: int) -> str:

@@ -1,0 +1,78 @@
+"""States of parts with a compound name, loads, drivers, and answers that tell several things apart."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import pytest
+
+from scope_ptz.english.grammar.questions.question_parser import parse_question
+from scope_ptz.errors import NotUnderstoodError
+from scope_ptz.perception.ground_truth import GroundTruthPerception
+from scope_ptz.perception.ground_truth.answers import answer
+from scope_ptz.perception.ground_truth.view import View, read_view
+from tests.perception import yard
+
+CHANGES: dict[str, dict[str, Any]] = {
+    "gate-01": {"category": "barrier arm", "name": "raised barrier arm", "attributes": {"state": "raised"}},
+    "fence-panel-01": {"category": "barrier arm", "name": "lowered barrier arm", "attributes": {"state": "lowered"}},
+    "excavator-01": {
+        "category": "forklift",
+        "name": "forklift",
+        "attributes": {"colour": "yellow", "carrying": "pallet of crates"},
+    },
+    "roller-01": {"category": "door", "name": "middle station door", "attributes": {"state": "open"}},
+    "lamp-post-01": {"category": "door", "name": "left station door", "attributes": {"state": "closed"}},
+    "lamp-post-02": {"category": "dock light", "name": "dock light", "attributes": {"colour": "green", "state": "lit"}},
+    "cone-01": {"category": "worker", "name": "worker", "attributes": {"helmet": "red"}},
+    "cone-02": {"category": "worker", "name": "worker", "attributes": {"helmet": "blue"}},
+    "tree-01": {"category": "pallet", "name": "pallet", "attributes": {"load": "crates"}},
+    "sign-03": {"category": "pallet", "name": "pallet", "attributes": {"load": "cartons"}},
+}
+
+
+def yard_with(changes: dict[str, dict[str, Any]]) -> View:
+    """Return a view of the yard in which other things stand in some places."""
+    truth = yard.truth()
+    instances = {i.id: i.model_copy(update=changes.get(i.id, {})) for i in yard.SCENE.instances}
+    scene = yard.SCENE.model_copy(update={"instances": list(instances.values())})
+    sightings = tuple(replace(s, instance=instances.get(s.instance.id, s.instance)) for s in truth.sightings)
+    return read_view(replace(truth, sightings=sightings), scene, 5.0)
+
+
+VIEW = yard_with(CHANGES)
+
+
+@pytest.mark.parametrize(
+    ("question", "expected"),
+    [
+        ("how many barriers are open?", "1 barrier is open."),
+        ("how many barriers are lowered?", "1 barrier is lowered."),
+        ("is there a raised barrier?", "Yes, there is a raised barrier arm on the left."),
+        (
+            "is the station door open?",
+            "Yes, 1 of the 2 station doors is open: the middle station door, on the right of the picture.",
+        ),
+        ("are there any traffic lights?", "Yes, there is a green dock light on the right."),
+        ("is the forklift carrying anything?", "Yes, the forklift is carrying a pallet of crates."),
+        ("what colour is the load of the forklift?", "I cannot tell the colour of the load of the forklift."),
+        ("who is driving forklift?", "I cannot see who is in the forklift."),
+        ("how many cats and dogs are there?", "There are no cats or dogs in view."),
+        ("what is the load of the pallets?", "Of the 2 pallets, 1 is carrying crates and 1 is carrying cartons."),
+        (
+            "what colour is the helmet of the worker on the left?",
+            "The helmet of the worker on the left is yellow and the helmets of the 2 workers at the bottom left are red and blue.",
+        ),
+    ],
+)
+def test_states_and_loads(question: str, expected: str) -> None:
+    assert answer(VIEW, parse_question(question))[0] == expected
+
+
+@pytest.mark.anyio
+@pytest.mark.parametrize("question", ["who is not wearing one?", "how many people have one?"])
+async def test_one_without_an_earlier_sentence_is_not_understood(question: str) -> None:
+    truth = GroundTruthPerception(lambda _: yard.StandInScene(), lambda *_: yard.truth())  # type: ignore[arg-type, return-value]
+    with pytest.raises(NotUnderstoodError, match="'one'"):
+        await truth.query(yard.frame(), question)
