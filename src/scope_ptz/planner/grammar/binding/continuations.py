@@ -4,18 +4,25 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from scope_ptz.planner.grammar import instruction_tree as ast
-from scope_ptz.planner.grammar.binding.commands import Command, correctable_command, standing_command
+from scope_ptz.planner.grammar.binding.commands import Command, Continuation, correctable_command, standing_command
 from scope_ptz.planner.grammar.binding.corrections import (
     asks_for_another_move,
     corrected_text,
+    duration_in_answer,
+    rejects_for_other_way,
     size_in_answer,
+    thing_after_failure,
+    thing_beside_rejected,
     turns_the_other_way,
 )
+from scope_ptz.planner.grammar.binding.overshoots import move_after_overshoot
+from scope_ptz.planner.grammar.binding.repeated_returns import continued_return
 from scope_ptz.planner.grammar.binding.single_moves import SingleMove, single_move, towards
+from scope_ptz.planner.grammar.binding.small_talk import NEVER_MIND
+from scope_ptz.planner.grammar.binding.zoom_factors import factor_for_last_zoom
 from scope_ptz.planner.grammar.execution.camera_history import Effect
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme, lexemes_of
 from scope_ptz.planner.grammar.parsing.instruction_parser import parse
@@ -29,6 +36,7 @@ _NUMBER = r"(?P<number>\d+(?:\.\d+)?)(?: degrees?| deg|°)?"
 _LITTLE = r"(?:just )?(?:a )?(?:little |tiny |wee )?(?:bit|touch|smidge|smidgen|tad|fraction|hair|little)"
 _MORE = re.compile(
     rf"(?:and |now |ok |okay |yes |please )*(?:(?P<little>{_LITTLE}) (?:more|further)|(?:another|by another) (?P<small>{_LITTLE})"
+    rf"|(?P<lot>a lot|lots|much|way) (?:more|further)"
     rf"|{_NUMBER} (?:more|further)|(?:another|by another) {_NUMBER.replace('number', 'added')})(?: please)?[.!]*",
     re.IGNORECASE,
 )
@@ -43,7 +51,6 @@ _PICTURES = re.compile(
     r"(?:and )?(?:another(?: one)?|one more|(?P<number>two|three|four|five|\d) more)(?: please)?[.!]*", re.IGNORECASE
 )
 _NOW = re.compile(r"(?:and |what about |how about )?now\?*", re.IGNORECASE)
-_FOR = re.compile(r"for (.+ (?:seconds?|minutes?))[.!]*", re.IGNORECASE)
 _CORRECTION = re.compile(r"(?:no|nope|sorry|wait|oops|i meant|i mean|i said|make that|make it|actually)\b", re.IGNORECASE)
 _ASKED = re.compile(r"By (?:how many degrees|what factor) shall I (?:pan|tilt|zoom) (left|right|up|down|in|out)\?")
 """The question about "the other way", which the next turn may answer with an amount."""
@@ -51,29 +58,17 @@ _ASKED = re.compile(r"By (?:how many degrees|what factor) shall I (?:pan|tilt|zo
 _NO_LEAD = "(FILLER|oh|COMMA|DASH|STOP)* (no|nope|nah|oops|wait|sorry) (FILLER|no|wait|sorry|COMMA|DASH|STOP)*"
 """Words before a command that reject the last one."""
 
+_NO_PAUSE = "(FILLER|oh|COMMA|DASH|STOP)* (no|nope|nah) (FILLER|COMMA|DASH|STOP)* (COMMA|DASH|STOP) (FILLER)*"
+"""Words before "more" that reject the last amount. Without a pause, "no more" asks for the opposite."""
+
+_ZOOM_BACK = "(ZOOM|go|come|FILLER)* (back_out|back_in) (FILLER|AGAINWORD|STOP)*"
+_ANY_WAY = "Which way do you mean: left, right, up, down, in or out?"
+
 _SHARE = "(FILLER|AND|THEN)* ((?P<fraction>FRACTION)|(?P<twice>TWICE)) (of)? (that|it) (FILLER|AGAINWORD)*"
 _MAX_LEXEMES = 16  # longer instructions neither continue nor correct an earlier turn
 _DONE_WITHOUT_CALLS = (ast.CameraState, ast.Help)
-FILLS_THE_VIEW = "A thing I zoom in on fills the view. Shall I do that, or zoom where I look now?"
-"""The question about a factor for a zoom on a thing."""
-
 NOTHING_DONE = "Then I do nothing. What shall I do instead?"
 """The reply to a bare "no" and to a command that is withdrawn."""
-
-
-@dataclass(frozen=True, slots=True)
-class Continuation:
-    """What an instruction stands for, given the earlier turns.
-
-    Attributes:
-        text: The full instruction, such as "pan left a bit" for "a bit more".
-        corrects: Whether it is to be carried out in place of the last command.
-        question: The question to ask the user instead; None if the instruction is clear.
-    """
-
-    text: str
-    corrects: bool = False
-    question: str | None = None
 
 
 def continuation_of(instruction: str, conversation: Sequence[PastTurn], presets: tuple[str, ...]) -> Continuation:
@@ -104,7 +99,7 @@ def _effect(turn: PastTurn, steps: Sequence[ast.Step], before: Sequence[Command]
         return "returned"
     if was_done:
         return "corrected" if corrects else "done"
-    if turn.reply == NOTHING_DONE and before and before[-1].effect in {"done", "corrected"}:
+    if turn.reply in {NOTHING_DONE, NEVER_MIND} and before and before[-1].effect in {"done", "corrected"}:
         return "rejected"
     return "done" if steps and all(isinstance(step, _DONE_WITHOUT_CALLS) for step in steps) else "nothing"
 
@@ -129,29 +124,36 @@ def _continuation(
         return Continuation(instruction)
     if (wanted := _return_after_no(lexemes, said, presets)) is not None:
         return Continuation(wanted)
+    if (lead := match_start(_NO_LEAD, lexemes)) is not None and full_match(_ZOOM_BACK, lexemes[lead.size :]):
+        said = said[lexemes[lead.size].start :]  # "no, back out"
+        lexemes = lexemes[lead.size :]
+    if (returned := continued_return(lexemes, said, commands, conversation)) is not None:
+        return returned
     last = standing_command(commands)
     if (answered := _answer_about_other_way(lexemes, conversation[-1], last)) is not None:
         return Continuation(answered)
     if (neighbour := _neighbour(said, conversation, presets)) is not None:
         return Continuation(f"go to preset {neighbour}")
+    if (meant := _about_same_command(lexemes, said, commands, conversation)) is not None:
+        return meant
     if (wrong := correctable_command(commands)) is not None:
         was_rejected = commands[-1].effect == "rejected"
-        if (meant := corrected_text(lexemes, said, wrong, was_rejected=was_rejected)) is not None:
-            return Continuation(meant, corrects=True)
+        if (text := corrected_text(lexemes, said, wrong, was_rejected=was_rejected)) is not None:
+            return Continuation(text, corrects=True)
+    if rejects_for_other_way(lexemes):
+        return Continuation(said, question=_ANY_WAY)
     if last is None:
         return Continuation(instruction)
-    if _amount_after_close_up(lexemes, last):
-        return Continuation(said, question=FILLS_THE_VIEW)
     move = single_move(last.steps)
     if move is not None and turns_the_other_way(lexemes):
         return _other_way(said, lexemes, move)
     if (changed := _changed_instruction(said, last)) is not None:
         return Continuation(changed)
-    if (meant := _corrected_within(said, last, presets)) is not None:
-        return Continuation(meant, corrects=True)
+    if (text := _corrected_within(said, last, presets)) is not None:
+        return Continuation(text, corrects=True)
     if (again := _same_axis_again(said, lexemes, commands, presets) or _share_of_zoom(lexemes, move)) is not None:
         return Continuation(again)
-    return Continuation(_more(said, move) or _measured_by_last(said, last, presets) or instruction)
+    return Continuation(_more(_without_no(lexemes, said), last) or _measured_by_last(said, last, presets) or instruction)
 
 
 def _return_after_no(lexemes: Sequence[Lexeme], said: str, presets: tuple[str, ...]) -> str | None:
@@ -164,10 +166,29 @@ def _return_after_no(lexemes: Sequence[Lexeme], said: str, presets: tuple[str, .
     return wanted if steps and all(_returns(step, is_trip_back=False) for step in steps) else None
 
 
-def _amount_after_close_up(lexemes: Sequence[Lexeme], last: Command) -> bool:
-    """Return whether a correction only names a factor, such as "no, 2x", although the last command zoomed in on a thing."""
-    is_close_up = len(last.steps) == 1 and isinstance(last.steps[0], ast.ZoomTo)
-    return is_close_up and full_match(f"{_NO_LEAD} (make it|by|to|FILLER)* NUM (X|PERCENT) (FILLER|STOP)*", lexemes) is not None
+def _about_same_command(
+    lexemes: Sequence[Lexeme], said: str, commands: Sequence[Command], conversation: Sequence[PastTurn]
+) -> Continuation | None:
+    """Return what a factor, a duration, a thing or a complaint stands for after the last command; None for other instructions."""
+    if (text := thing_after_failure(lexemes, said, commands[-1], conversation[-1])) is not None:
+        return Continuation(text)
+    last = standing_command(commands)
+    turn = None if last is None else next(conversation[i] for i in reversed(range(len(commands))) if commands[i] is last)
+    if (undershot := move_after_overshoot(lexemes, said, last, turn)) is not None:
+        return undershot
+    if last is None or turn is None:
+        return None
+    if (text := duration_in_answer(lexemes, last)) is not None:
+        return Continuation(text)
+    if (text := thing_beside_rejected(lexemes, last, turn)) is not None:
+        return Continuation(text, corrects=True)
+    return factor_for_last_zoom(lexemes, last, turn)
+
+
+def _without_no(lexemes: Sequence[Lexeme], said: str) -> str:
+    """Return an instruction without a "no" and the pause after it: "a bit more" for "no, a bit more"."""
+    lead = match_start(_NO_PAUSE, lexemes)
+    return said if lead is None or lead.size >= len(lexemes) else said[lexemes[lead.size].start :]
 
 
 def _answer_about_other_way(lexemes: Sequence[Lexeme], turn: PastTurn, last: Command | None) -> str | None:
@@ -188,17 +209,23 @@ def _other_way(said: str, lexemes: Sequence[Lexeme], move: SingleMove) -> Contin
     return Continuation(said, question=f"{amount} shall I {other.axis} {other.way}?")
 
 
-def _more(said: str, move: SingleMove | None) -> str | None:
-    """Return the move of "a bit more" or "another 10" after a move; None for other instructions."""
-    match = _MORE.fullmatch(said)
-    if move is None or (match is None and not _SAME.fullmatch(said)):
+def _more(said: str, last: Command) -> str | None:
+    """Return the move of "a bit more" or "another 10" after a move or a close-up; None for other instructions."""
+    move, match = single_move(last.steps), _MORE.fullmatch(said)
+    if match is None and not _SAME.fullmatch(said):
         return None
+    if move is None:
+        is_close_up = len(last.steps) == 1 and isinstance(last.steps[0], ast.ZoomTo)
+        move = towards("in") if is_close_up and (match is None or not (match["number"] or match["added"])) else None
+        return None if move is None else f"{move.axis} {move.way} {'a lot' if match is not None and match['lot'] else 'a bit'}"
     if match is None:
         return "again"
     number = match["number"] or match["added"]
     if number and move.axis == "zoom":
         return None
-    return f"{move.axis} {move.way} {number} degrees" if number else f"{move.axis} {move.way} a bit"
+    if number:
+        return f"{move.axis} {move.way} {number} degrees"
+    return f"{move.axis} {move.way} {'a lot' if match['lot'] else 'a bit'}"
 
 
 def _measured_by_last(said: str, last: Command, presets: tuple[str, ...]) -> str | None:
@@ -248,7 +275,7 @@ def _share_of_zoom(lexemes: Sequence[Lexeme], move: SingleMove | None) -> str | 
 
 
 def _changed_instruction(said: str, last: Command) -> str | None:
-    """Return the last instruction as changed by an addition ("two more", "and now?", "for 20 seconds"); None for others."""
+    """Return the last instruction as changed by an addition ("two more", "and now?"); None for others."""
     if len(last.steps) != 1:
         return None
     (step,) = last.steps
@@ -256,8 +283,6 @@ def _changed_instruction(said: str, last: Command) -> str | None:
         return f"take {more['number'] or 'another'} {'pictures' if more['number'] else 'picture'}"
     if isinstance(step, ast.Count | ast.Ask) and _NOW.fullmatch(said):
         return last.text
-    if isinstance(step, ast.Track) and step.thing.text and (time := _FOR.fullmatch(said)) is not None:
-        return f"follow the {step.thing.text} for {time[1]}"
     return None
 
 

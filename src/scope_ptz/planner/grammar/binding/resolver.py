@@ -10,7 +10,7 @@ from scope_ptz.english import listing
 from scope_ptz.planner.grammar import instruction_tree as ast
 from scope_ptz.planner.grammar.binding.asked_things import asked_thing
 from scope_ptz.planner.grammar.binding.commands import standing_command
-from scope_ptz.planner.grammar.binding.continuations import FILLS_THE_VIEW, commands_of
+from scope_ptz.planner.grammar.binding.continuations import commands_of
 from scope_ptz.planner.grammar.binding.earlier_comparison import counts_of_tour, earlier_winners, last_two_presets
 from scope_ptz.planner.grammar.binding.embedded_questions import direct_question
 from scope_ptz.planner.grammar.binding.focus import latest_counts
@@ -37,6 +37,7 @@ from scope_ptz.planner.grammar.binding.question_text import (
     two_questions,
     with_subject,
 )
+from scope_ptz.planner.grammar.binding.zoom_factors import FILLS_THE_VIEW
 from scope_ptz.planner.grammar.execution.answer_sentences import noun
 
 _THE_THING_AND_IT = re.compile(r"\bthe \w+.*\b(it|they|them)\b")

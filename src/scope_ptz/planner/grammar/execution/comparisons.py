@@ -35,16 +35,20 @@ class ComparisonSteps(ConditionEvaluation):
     def _count_at(self, thing: ast.Thing, place: ast.PresetRef | None, view: View | None = None) -> CallGenerator:
         """Go to a preset, if one is given, and return the number of objects that are visible there."""
         if place is not None:
-            yield from self._camera_call("go_to_preset", name=place.name)
-            self._record_position(place.name)
+            yield from self._survey(place)
         return (yield from self._visible_count(thing.text, view))
+
+    def _survey(self, place: ast.PresetRef) -> CallGenerator:
+        """Go to a preset of several, without a sentence that says so."""
+        yield from self._camera_call("go_to_preset", name=place.name)
+        self._record_position(place.name)
+        self.unannounced_preset = place.name
 
     def _tour(self, stops: Sequence[Stop]) -> CallGenerator:
         """Count the same objects at several presets, and report the counts together."""
         seen: list[tuple[ast.Tally, int]] = []
         for place, thing in stops:
-            yield from self._camera_call("go_to_preset", name=place.name)
-            self._record_position(place.name)
+            yield from self._survey(place)
             result = yield from self._perception_call("count_objects", description=thing.text, view="current")
             self._last_was_yes = result["count"] > 0 if result is not None else None
             if result is not None and not result.get("complete", True):
@@ -140,7 +144,7 @@ class ComparisonSteps(ConditionEvaluation):
         for place in step.places:
             count = yield from self._count_at(step.thing, place)
             if count or self.assume_met:
-                self._best_preset, self._last_was_yes = place.name, True
+                self._best_preset, self._last_was_yes, self.unannounced_preset = place.name, True, ""
                 counted = phrases.counted(step.thing.text, count)
                 self._note(f"The {'last' if step.last else 'first'} is {place.name}, where I can see {counted}")
                 return
