@@ -1,4 +1,4 @@
-"""What the earlier turns of a conversation commanded, which of their commands still stands, and what an instruction adds to them."""
+"""What the earlier turns of a conversation commanded, which command still stands, and what an instruction adds to it."""
 
 from __future__ import annotations
 

@@ -18,6 +18,7 @@ from scope_ptz.planner.grammar.binding.corrections import (
     thing_beside_rejected,
     turns_the_other_way,
 )
+from scope_ptz.planner.grammar.binding.further_moves import measured_by_last, more, same_axis_again, share_of_zoom
 from scope_ptz.planner.grammar.binding.overshoots import move_after_overshoot
 from scope_ptz.planner.grammar.binding.repeated_returns import continued_return
 from scope_ptz.planner.grammar.binding.single_moves import SingleMove, single_move, towards
@@ -32,15 +33,6 @@ if TYPE_CHECKING:
     from scope_ptz.planner.base import PastTurn
 
 _MAX_TURNS = 30  # maximum number of earlier turns that are considered
-_NUMBER = r"(?P<number>\d+(?:\.\d+)?)(?: degrees?| deg|°)?"
-_LITTLE = r"(?:just )?(?:a )?(?:little |tiny |wee )?(?:bit|touch|smidge|smidgen|tad|fraction|hair|little)"
-_MORE = re.compile(
-    rf"(?:and |now |ok |okay |yes |please )*(?:(?P<little>{_LITTLE}) (?:more|further)|(?:another|by another) (?P<small>{_LITTLE})"
-    rf"|(?P<lot>a lot|lots|much|way) (?:more|further)"
-    rf"|{_NUMBER} (?:more|further)|(?:another|by another) {_NUMBER.replace('number', 'added')})(?: please)?[.!]*",
-    re.IGNORECASE,
-)
-_SAME = re.compile(r"(?:and |now |ok |okay |yes |please )*(?:more|further|keep going|some more)(?: please)?[.!]*", re.IGNORECASE)
 _NEIGHBOUR = re.compile(
     r"(?:and |now |ok |okay |please )*(?:(?:go|move|switch|jump|on) (?:on )?to |show (?:me )?)?"
     r"(?:the )?(?P<which>next|following|previous)"
@@ -58,13 +50,9 @@ _ASKED = re.compile(r"By (?:how many degrees|what factor) shall I (?:pan|tilt|zo
 _NO_LEAD = "(FILLER|oh|COMMA|DASH|STOP)* (no|nope|nah|oops|wait|sorry) (FILLER|no|wait|sorry|COMMA|DASH|STOP)*"
 """Words before a command that reject the last one."""
 
-_NO_PAUSE = "(FILLER|oh|COMMA|DASH|STOP)* (no|nope|nah) (FILLER|COMMA|DASH|STOP)* (COMMA|DASH|STOP) (FILLER)*"
-"""Words before "more" that reject the last amount. Without a pause, "no more" asks for the opposite."""
-
 _ZOOM_BACK = "(ZOOM|go|come|FILLER)* (back_out|back_in) (FILLER|AGAINWORD|STOP)*"
 _ANY_WAY = "Which way do you mean: left, right, up, down, in or out?"
 
-_SHARE = "(FILLER|AND|THEN)* ((?P<fraction>FRACTION)|(?P<twice>TWICE)) (of)? (that|it) (FILLER|AGAINWORD)*"
 _MAX_LEXEMES = 16  # longer instructions neither continue nor correct an earlier turn
 _DONE_WITHOUT_CALLS = (ast.CameraState, ast.Help)
 NOTHING_DONE = "Then I do nothing. What shall I do instead?"
@@ -151,9 +139,9 @@ def _continuation(
         return Continuation(changed)
     if (text := _corrected_within(said, last, presets)) is not None:
         return Continuation(text, corrects=True)
-    if (again := _same_axis_again(said, lexemes, commands, presets) or _share_of_zoom(lexemes, move)) is not None:
+    if (again := same_axis_again(said, lexemes, commands, presets) or share_of_zoom(lexemes, move)) is not None:
         return Continuation(again)
-    return Continuation(_more(_without_no(lexemes, said), last) or _measured_by_last(said, last, presets) or instruction)
+    return Continuation(more(lexemes, said, last) or measured_by_last(said, last, presets) or instruction)
 
 
 def _return_after_no(lexemes: Sequence[Lexeme], said: str, presets: tuple[str, ...]) -> str | None:
@@ -185,12 +173,6 @@ def _about_same_command(
     return factor_for_last_zoom(lexemes, last, turn)
 
 
-def _without_no(lexemes: Sequence[Lexeme], said: str) -> str:
-    """Return an instruction without a "no" and the pause after it: "a bit more" for "no, a bit more"."""
-    lead = match_start(_NO_PAUSE, lexemes)
-    return said if lead is None or lead.size >= len(lexemes) else said[lexemes[lead.size].start :]
-
-
 def _answer_about_other_way(lexemes: Sequence[Lexeme], turn: PastTurn, last: Command | None) -> str | None:
     """Return the move that the last turn asked about, if the instruction says how far: "20", "by 20 degrees", "the same"."""
     asked = _ASKED.fullmatch(turn.reply)
@@ -207,71 +189,6 @@ def _other_way(said: str, lexemes: Sequence[Lexeme], move: SingleMove) -> Contin
         return Continuation(other.text)  # "now the other way"
     amount = "By what factor" if other.axis == "zoom" else "By how many degrees"
     return Continuation(said, question=f"{amount} shall I {other.axis} {other.way}?")
-
-
-def _more(said: str, last: Command) -> str | None:
-    """Return the move of "a bit more" or "another 10" after a move or a close-up; None for other instructions."""
-    move, match = single_move(last.steps), _MORE.fullmatch(said)
-    if match is None and not _SAME.fullmatch(said):
-        return None
-    if move is None:
-        is_close_up = len(last.steps) == 1 and isinstance(last.steps[0], ast.ZoomTo)
-        move = towards("in") if is_close_up and (match is None or not (match["number"] or match["added"])) else None
-        return None if move is None else f"{move.axis} {move.way} {'a lot' if match is not None and match['lot'] else 'a bit'}"
-    if match is None:
-        return "again"
-    number = match["number"] or match["added"]
-    if number and move.axis == "zoom":
-        return None
-    if number:
-        return f"{move.axis} {move.way} {number} degrees"
-    return f"{move.axis} {move.way} {'a lot' if match['lot'] else 'a bit'}"
-
-
-def _measured_by_last(said: str, last: Command, presets: tuple[str, ...]) -> str | None:
-    """Return the move of an instruction that needs the last move, about one axis, to be understood: "back 5"."""
-    alone = parse(said, presets).steps
-    if single_move(last.steps) is None or alone is None or not any(isinstance(step, ast.Unclear) for step in alone):
-        return None
-    together = parse(f"{last.text.rstrip('.!? ')}, {said}", presets).steps
-    if together is None or len(together) != 2 or together[:1] != last.steps:
-        return None
-    move = single_move(together[1:])
-    return move.text if move is not None else None
-
-
-def _same_axis_again(said: str, lexemes: Sequence[Lexeme], commands: Sequence[Command], presets: tuple[str, ...]) -> str | None:
-    """Return the amount that "pan left again" or "zoom back out" takes from the last move about that axis; None for others.
-
-    In the same direction, it repeats that move. In the other direction, it undoes it.
-    """
-    is_again = any(x.has("AGAINWORD") or x.word in {"back_out", "back_in"} for x in lexemes)
-    if not is_again or any(x.has("NUM", "LITTLE", "LOT", "LIMIT", "FRACTION") for x in lexemes):
-        return None
-    wanted = single_move(parse(said, presets).steps or ())
-    if wanted is None:
-        return None
-    for command in reversed(commands):
-        if command.effect not in {"done", "corrected"}:
-            return None
-        if wanted.axis == "zoom" and wanted.way == "out" and len(command.steps) == 1 and isinstance(command.steps[0], ast.ZoomTo):
-            return "undo the zoom"
-        if (move := single_move(command.steps)) is None or move.axis != wanted.axis:
-            continue
-        if move.way == wanted.way:
-            return move.text if any(x.has("AGAINWORD") for x in lexemes) else None
-        return "undo the zoom" if move.axis == "zoom" else move.reversed().text
-    return None
-
-
-def _share_of_zoom(lexemes: Sequence[Lexeme], move: SingleMove | None) -> str | None:
-    """Return the zoom to a multiple of the current magnification: "half of that", "double that" after a zoom."""
-    match = full_match(_SHARE, lexemes)
-    if match is None or move is None or move.axis != "zoom":
-        return None
-    factor = match["fraction"][0].value if match.has("fraction") else 2.0
-    share = SingleMove("zoom", "in" if factor >= 1 else "out", f"{max(factor, 1 / factor):g} times")
-    return "undo the zoom" if share == move.reversed() else share.text
 
 
 def _changed_instruction(said: str, last: Command) -> str | None:

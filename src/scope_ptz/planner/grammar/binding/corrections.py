@@ -86,7 +86,7 @@ def corrected_text(lexemes: Sequence[Lexeme], text: str, last: Command, *, was_r
 
 
 def thing_after_failure(lexemes: Sequence[Lexeme], text: str, last: Command, turn: PastTurn) -> str | None:
-    """Return the last command for another thing, if its own was not understood: "no, the road roller" after "zoom in on the exavator".
+    """Return the last command for another thing if its own was not understood: "no, the van" after "zoom in on the lorrry".
 
     Args:
         lexemes: The lexemes of the text.
@@ -101,6 +101,8 @@ def thing_after_failure(lexemes: Sequence[Lexeme], text: str, last: Command, tur
     rest = _without_edges(lexemes[editing.size if editing is not None else 0 :])
     if not isinstance(step, ast.ZoomTo | ast.Track | ast.Count) or not rest or any(x.has("NOT", "OR", *_VERBS) for x in rest):
         return None
+    if editing is None and any(x.has("PRESET") for x in rest):
+        return None  # "the gate" may be the preset
     thing = text[rest[0].start : rest[-1].end]
     if editing is not None and not _is_bare_no(lexemes[: editing.size]) and all(x.has("FREE") for x in rest):
         return _about(step, f"the {thing}" if not isinstance(step, ast.Count) else thing)  # "no, road roller"

@@ -17,9 +17,7 @@ from scope_ptz.planner.grammar.parsing.parts.patterns import full_match
 if TYPE_CHECKING:
     from scope_ptz.planner.base import PastTurn
 
-_DEGREE = (
-    "(much|much_more|(?P<far>far)|(?P<in>close|tight|near)|(?P<out>wide)|(?P<up>high)|(?P<down>low)|far (away|(?P<out>out)))"
-)
+_DEGREE = "(much|much_more|far (away|(?P<out>OUT))?|(?P<in>close|tight|near)|(?P<out>wide)|(?P<up>high)|(?P<down>low))"
 _WAY = "(to|DET)* ((?P<left>LEFT)|(?P<right>RIGHT)|(?P<up>UP)|(?P<down>DOWN)|(?P<in>IN)) (SIDE)?"
 _LEAD = (
     "(FILLER|no|nope|oops|wait|hmm|AND|BUT|COMMA|DASH|STOP|that|this|it|SELF|BE|HAVEV|went|turned|moved|zoomed|panned|tilted|"
@@ -50,8 +48,6 @@ def move_after_overshoot(
     """
     match = full_match(_OVERSHOOT, lexemes)
     if match is None or command is None or turn is None or (changed := _change(command, turn)) is None:
-        return None
-    if match.has("out") and match.has("in"):
         return None
     ways = [way for way in _WAYS if match.has(way)]
     if full_match(_OVERSHOOT, lexemes_of(turn.instruction)):

@@ -92,8 +92,8 @@ NEVER_MIND = "OK."
 
 _NEVER_MIND = "(FILLER|no|oh|actually|COMMA|STOP|DASH)* (never mind|nevermind|nvm|nm|forget (about)? it) (FILLER|THEN|COMMA|STOP)*"
 _SAY_AGAIN = (
-    "(FILLER|COMMA|STOP|DASH)* (say_again|(say|come) (that|it|this)? again|pardon (SELF)?|SELF beg your pardon|"
-    "what (did SELF|DOV SELF) say|repeat (your|DET|last|that)* (answer|reply|message)) (FILLER|COMMA|STOP|QUESTION)*"
+    "(FILLER|MODAL SELF|COMMA|STOP|DASH)* (say_again|(say|come) (that|it|this)? again|pardon|pardon_me|SELF beg your pardon|"
+    "what DOV SELF (FILLER)* say|repeat (your|DET|last|that)* (answer|reply|message)) (FILLER|COMMA|STOP|QUESTION)*"
 )
 
 

@@ -40,9 +40,10 @@ class ComparisonSteps(ConditionEvaluation):
 
     def _survey(self, place: ast.PresetRef) -> CallGenerator:
         """Go to a preset of several, without a sentence that says so."""
+        before = self.surveyed
         yield from self._camera_call("go_to_preset", name=place.name)
         self._record_position(place.name)
-        self.unannounced_preset = place.name
+        self.surveyed = (*before, place.name)
 
     def _tour(self, stops: Sequence[Stop]) -> CallGenerator:
         """Count the same objects at several presets, and report the counts together."""
@@ -109,6 +110,14 @@ class ComparisonSteps(ConditionEvaluation):
         before = yield from self._visible_count(text, "current")
         yield from self._run_steps(step.moves)
         after = yield from self._visible_count(text, "current")
+        if step.than_at is not None:
+            met = before > after if step.comparison == "more" else before < after
+            self._last_was_yes = met
+            self._note(
+                f"{'Yes' if met else 'No'}: I could see {phrases.counted(text, before)} before, "
+                f"and I can see {phrases.counted(text, after)} at {step.than_at.name}"
+            )
+            return
         self._note(f"I can see {phrases.counted(text, before)} before the move and {phrases.counted(text, after)} after it")
         if before == after:
             self._note("The number is the same before and after")
@@ -144,7 +153,7 @@ class ComparisonSteps(ConditionEvaluation):
         for place in step.places:
             count = yield from self._count_at(step.thing, place)
             if count or self.assume_met:
-                self._best_preset, self._last_was_yes, self.unannounced_preset = place.name, True, ""
+                self._best_preset, self._last_was_yes, self.surveyed = place.name, True, ()
                 counted = phrases.counted(step.thing.text, count)
                 self._note(f"The {'last' if step.last else 'first'} is {place.name}, where I can see {counted}")
                 return

@@ -49,8 +49,8 @@ class Program(ReturnSteps, ComparisonSteps):
             yield from self._run_steps(steps)
         except HaltedError as halt:
             self._note(str(halt))
-        if self.unannounced_preset not in {"", self.positions.preset}:
-            self._note(f"The camera is now at {self.unannounced_preset}")
+        if len(self.surveyed) > 1 and self.surveyed[-1] != self.positions.preset:
+            self._note(f"The camera is now at {self.surveyed[-1]}")
 
     @property
     def offer(self) -> Offer | None:

@@ -78,7 +78,7 @@ class RunState:
         notes: The sentences of the answer.
         stops: The indices of the notes with which the report about a preset begins.
         sources: The sources of the perception results.
-        unannounced_preset: The preset at which a survey of presets has left the camera; empty if a note says where the camera is.
+        surveyed: The presets that a survey has visited since the last move that a note reports.
     """
 
     limits: Limits
@@ -93,7 +93,7 @@ class RunState:
     notes: list[str] = field(default_factory=list)
     stops: list[int] = field(default_factory=list)
     sources: list[str] = field(default_factory=list)
-    unannounced_preset: str = ""
+    surveyed: tuple[str, ...] = ()
     _not_found: set[str] = field(default_factory=set)  # descriptions of objects that were not found
     _visited: list[VisitedPosition] = field(default_factory=list)  # positions to which "go back" can return
     _best_preset: str | None = None  # the preset for "go there" after a comparison; None if there is no winner
@@ -118,7 +118,7 @@ class RunState:
         if outcome.error is None and result and isinstance(pose := result.get("pose"), dict):
             self.pose = Pose(pose["pan_deg"], pose["tilt_deg"], pose["zoom"])
             self._note_viewpoint(tool, arguments)
-            self.unannounced_preset = self.unannounced_preset if tool not in _MOVING_TOOLS else ""
+            self.surveyed = () if tool in _MOVING_TOOLS else self.surveyed
         if result and (source := result.get("source")) and source not in self.sources:
             self.sources.append(source)
         return outcome
