@@ -191,6 +191,7 @@ def test_a_viewpoint_without_a_preset_cannot_be_returned_to() -> None:
         (("zoom in 4x", "zoom out a bit", "the other way", "2"), Pose(0, 0, 5)),
         (("zoom in 2x", "zoom out a bit", "no, the other way"), Pose(0, 0, 2.5)),
         (("zoom in 2x", "zoom in 2x", "no, back out"), Pose(0, 0, 2)),
+        (("zoom in 4x", "zoom out 2x", "no, back out"), Pose(0, 0, 1)),
         (("zoom in 2x", "3x"), Pose(0, 0, 3)),
         (("zoom in 2x", "make it 3x instead"), Pose(0, 0, 3)),
         (("zoom to 2x", "3x"), Pose(0, 0, 3)),

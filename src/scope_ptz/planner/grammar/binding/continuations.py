@@ -113,7 +113,7 @@ def _continuation(
     if (wanted := _return_after_no(lexemes, said, presets)) is not None:
         return Continuation(wanted)
     if (lead := match_start(_NO_LEAD, lexemes)) is not None and full_match(_ZOOM_BACK, lexemes[lead.size :]):
-        said = said[lexemes[lead.size].start :]  # "no, back out"
+        instruction = said = said[lexemes[lead.size].start :]  # "no, back out"
         lexemes = lexemes[lead.size :]
     if (returned := continued_return(lexemes, said, commands, conversation)) is not None:
         return returned
