@@ -81,7 +81,8 @@ HERE = (ast.Tally(CARS), ast.Tally(VANS))
     ],
 )  # fmt: skip
 def test_calculations(step: ast.Step, counts: tuple[int, ...], answer: str) -> None:
-    assert run(step, *counts)[0] == answer
+    said, visited = run(step, *counts)
+    assert said == answer + (f" The camera is now at {visited[-1]}." if visited else "")
 
 
 def test_places_are_visited_in_their_order() -> None:
@@ -112,7 +113,8 @@ def test_places_are_visited_in_their_order() -> None:
     ],
 )
 def test_comparisons_of_presets(step: ast.WhichPreset, counts: tuple[int, ...], ending: str) -> None:
-    assert run(step, *counts)[0].endswith(ending)
+    said, visited = run(step, *counts)
+    assert said.endswith(ending + (f" The camera is now at {visited[-1]}." if len(visited) > 1 else ""))
 
 
 def test_the_camera_goes_to_the_preset_of_the_requested_rank() -> None:

@@ -139,6 +139,32 @@ def test_there_is_the_preset_that_was_found() -> None:
     assert reply == "Where is 'there'? gate and highway show the same number."
 
 
+@pytest.mark.parametrize(
+    ("asked", "answer"),
+    [
+        ("are there more cones here than at the gate?", "Yes: I could see 4 cones before, and I can see 1 cone at gate."),
+        ("are there fewer cones here than at the gate?", "No: I could see 4 cones before, and I can see 1 cone at gate."),
+    ],
+)
+def test_here_is_compared_with_a_preset(asked: str, answer: str) -> None:
+    calls, reply = last_calls("go to the highway", "pan left 10", asked, looks=(4, 1))
+    assert [name for name, _ in calls] == ["count_objects", "go_to_preset", "count_objects"]
+    assert reply == f"I went to preset gate. {answer} (Source: the simulator's ground truth.)"
+
+
+def test_there_is_the_view_with_more_things() -> None:
+    stage, turns = Stage([4, 1]), tuple[PastTurn, ...]()
+    for instruction in ("go to the highway", "pan left 10", "are there more cones here than at the gate?", "go there"):
+        turns = (*turns, stage.turn(instruction, turns))
+    assert turns[-1].reply == "I went back: the camera is at pan -10.0, tilt 0.0, zoom 1.0x again."
+
+
+def test_a_survey_says_where_it_leaves_the_camera() -> None:
+    _, reply = last_calls("is there a cone at any preset?", looks=(4, 1))
+    assert "The camera is now at highway." in reply
+    assert "The camera is now" not in last_calls("go to the highway", "is there a cone at any preset?", looks=(4, 1))[1]
+
+
 def test_a_comparison_without_counts_is_asked_about() -> None:
     assert last_calls("go home", "which has more?") == ([], "Which presets shall I compare, and what shall I count there?")
 

@@ -64,6 +64,43 @@ def test_a_close_look_that_was_put_back_is_no_move() -> None:
     assert stage.pose == Pose(0, 0, 1)
 
 
+@pytest.mark.parametrize(
+    ("instructions", "pan_deg"),
+    [
+        (("pan right 20", "pan right 10", "undo", "one more time"), 0),
+        (("pan right 20", "pan right 10", "go back", "and again"), 0),
+        (("pan right 20", "pan right 10", "undo", "redo"), 30),
+        (("pan right 20", "pan right 10", "undo", "redo", "undo", "undo"), 0),
+        (("pan right 20", "undo", "undo the undo"), 20),
+        (("pan right 20", "redo"), 40),
+    ],
+)
+def test_an_undo_is_continued_and_taken_back(instructions: tuple[str, ...], pan_deg: float) -> None:
+    stage = Stage()
+    talk(stage, *instructions)
+    assert stage.pose == Pose(pan_deg, 0, 1)
+
+
+def test_nothing_to_redo_is_said() -> None:
+    stage = Stage()
+    reply = talk(stage, "pan right 10 or 20", "redo")[-1].reply
+    assert not stage.calls
+    assert reply == "Nothing was taken back just before, so I have nothing to redo. What shall I do?"
+
+
+@pytest.mark.parametrize(
+    ("instructions", "place"),
+    [
+        (("go to the highway", "pan left 5", "undo"), "preset highway"),
+        (("zoom in 1.78x", "undo"), "pan 0.0, tilt 0.0, zoom 1.0x"),
+        (("zoom in 1.78x", "zoom back out"), "pan 0.0, tilt 0.0, zoom 1.0x"),
+        (("go home", "pan right 5", "go home", "go back"), "pan 5.0, tilt 0.0, zoom 1.0x"),
+    ],
+)
+def test_every_return_is_reported_in_one_way(instructions: tuple[str, ...], place: str) -> None:
+    assert talk(Stage(), *instructions)[-1].reply == f"I went back: the camera is at {place} again."
+
+
 def test_nothing_is_left_to_undo() -> None:
     stage = Stage([2])
     reply = talk(stage, "pan right 20", "undo", "undo")[-1].reply
@@ -111,7 +148,7 @@ def test_the_camera_returns_to_the_viewpoint_that_it_left(undo: str) -> None:
     if undo == "undo":
         assert (stage.viewpoint, stage.pose) == ("mast", Pose(12, 0, 1))
         assert stage.calls == [("go_to_preset", {"name": "gate"}), ("adjust_ptz", {"pan_deg": 7})]
-        assert reply.startswith("I went back to where the camera was, by way of preset gate")
+        assert reply == "I went back: the camera is at pan 12.0, tilt 0.0, zoom 1.0x again."
     else:
         assert (stage.viewpoint, stage.pose) == ("bridge", Pose(-30, 0, 2))
 
@@ -153,6 +190,11 @@ def test_a_viewpoint_without_a_preset_cannot_be_returned_to() -> None:
         (("zoom in 3x", "no, 2x"), Pose(0, 0, 2)),
         (("zoom in 4x", "zoom out a bit", "the other way", "2"), Pose(0, 0, 5)),
         (("zoom in 2x", "zoom out a bit", "no, the other way"), Pose(0, 0, 2.5)),
+        (("zoom in 2x", "zoom in 2x", "no, back out"), Pose(0, 0, 2)),
+        (("zoom in 4x", "zoom out 2x", "no, back out"), Pose(0, 0, 1)),
+        (("zoom in 2x", "3x"), Pose(0, 0, 3)),
+        (("zoom in 2x", "make it 3x instead"), Pose(0, 0, 3)),
+        (("zoom to 2x", "3x"), Pose(0, 0, 3)),
     ],
 )
 def test_a_correction_starts_from_where_the_corrected_command_started(instructions: tuple[str, ...], pose: Pose) -> None:
@@ -161,10 +203,84 @@ def test_a_correction_starts_from_where_the_corrected_command_started(instructio
     assert stage.pose.as_dict() == pose.as_dict()
 
 
-def test_a_correction_says_what_the_camera_did_in_all() -> None:
+def test_a_correction_says_what_the_camera_did_instead() -> None:
     reply = talk(Stage(), "pan right 20", "sorry, I meant 30")[-1].reply
     pose = "pan 30.0, tilt 0.0, zoom 1.0x"
-    assert reply == f"I panned right 10 degrees, so the camera has panned right 30 degrees in all; it is now at {pose}."
+    assert reply == f"I panned right 10 degrees, so the camera has panned right 30 degrees instead; it is now at {pose}."
+
+
+@pytest.mark.parametrize("said", ["2x", "no, 2x", "make it 2x instead", "sorry, I meant 2x"])
+def test_a_factor_after_a_close_up_sets_the_zoom_on_the_thing(said: str) -> None:
+    stage = Stage([True], pose=Pose(10, -3, 1.5), lands=FOUNTAIN)
+    talk(stage, "zoom in on the fountain", said)
+    assert stage.pose == Pose(42, -6, 3)
+
+
+def test_a_factor_after_zooming_out_is_asked_about() -> None:
+    stage = Stage(pose=Pose(0, 0, 4))
+    assert talk(stage, "zoom out 2x", "3x")[-1].reply == "Shall I zoom in 3x, or zoom out 3x?"
+
+
+@pytest.mark.parametrize(
+    ("instructions", "pose"),
+    [
+        (("pan left 30", "too much"), Pose(-15)),
+        (("pan left 30", "not that far"), Pose(-15)),
+        (("pan left 30", "that was a bit too far"), Pose(-15)),
+        (("pan left 30", "too far left"), Pose(-15)),
+        (("tilt up 10", "too high"), Pose(0, 5)),
+        (("zoom in 4x", "too much"), Pose(0, 0, 2)),
+        (("zoom in 4x", "less"), Pose(0, 0, 2)),
+        (("zoom in 4x", "way too close"), Pose(0, 0, 2)),
+        (("zoom in 4x", "too much", "still too close"), Pose(0, 0, 1)),
+        (("zoom in on the fountain", "too close"), Pose(42, -6, 2)),
+        (("zoom in on the fountain", "a bit more"), Pose(42, -6, 5)),
+        (("pan left 20", "no, more"), Pose(-40)),
+        (("pan left 20", "no, a bit further"), Pose(-25)),
+        (("pan left 20", "a lot more"), Pose(-65)),
+    ],
+)
+def test_a_move_that_went_too_far_or_not_far_enough_is_changed(instructions: tuple[str, ...], pose: Pose) -> None:
+    stage = Stage([True], lands=FOUNTAIN)
+    talk(stage, *instructions)
+    assert stage.pose.as_dict() == pose.as_dict()
+
+
+@pytest.mark.parametrize(
+    ("instructions", "question"),
+    [
+        (("pan left 30", "too much", "too much"), "Shall I pan right further, or left again?"),
+        (("pan left 20 and tilt up 5", "too much"), "Which way shall I turn, and how far?"),
+        (("pan left 30", "too far right"), None),
+        (("pan left 30", "no more"), None),
+        (("count the cones", "no, the other way"), "Which way do you mean: left, right, up, down, in or out?"),
+    ],
+)
+def test_a_complaint_that_is_unclear_moves_nothing(instructions: tuple[str, ...], question: str | None) -> None:
+    stage = Stage([3])
+    reply = talk(stage, *instructions)[-1].reply
+    assert not stage.calls
+    assert question is None or reply == question
+
+
+@pytest.mark.parametrize("said", ["no, 10", "for 10 seconds", "make it 10 seconds", "10 seconds"])
+def test_a_thing_is_followed_for_another_time_from_where_the_camera_is(said: str) -> None:
+    stage = Stage([1])
+    talk(stage, "how many men are there?", "follow him for 5 seconds", said)
+    assert stage.calls == [("track_object", {"description": "man", "duration_s": 10})]
+
+
+@pytest.mark.parametrize("said", ["no, the road roller", "no, road roller", "the road roller"])
+def test_the_verb_of_a_thing_that_was_not_understood_stays(said: str) -> None:
+    stage = Stage([True], fail={"zoom_to_object": 2})
+    talk(stage, "zoom in on the exavator", said)
+    assert stage.calls == [("zoom_to_object", {"description": "road roller"})]
+
+
+def test_the_rejected_thing_is_not_zoomed_in_on_again() -> None:
+    stage = Stage([True], lands=FOUNTAIN)
+    talk(stage, "zoom in on the nearest man", "no, the one on the right")
+    assert stage.calls[-1] == ("zoom_to_object", {"description": "man to the right of the nearest man"})
 
 
 @pytest.mark.parametrize(
@@ -203,7 +319,8 @@ def test_a_hesitation_corrects_nothing(hesitation: str) -> None:
 
 def test_a_correction_beyond_a_limit_names_the_limit() -> None:
     stage = Stage()
-    assert "as far as the tilt limit allows" in talk(stage, "tilt up 80", "no, I meant 120")[-1].reply
+    reply = talk(stage, "tilt up 80", "no, I meant 120")[-1].reply
+    assert reply == "I did not move: the camera is already tilted up as far as it can go."
 
 
 @pytest.mark.parametrize(

@@ -316,7 +316,7 @@ def test_the_other_thing_is_zoomed_in_on(instructions: tuple[str, ...], expected
         (("how many dogs are there?", "zoom in on both"), "Which of the 3 dogs do you mean?"),
         (("how many dogs are there?", "zoom in on both", "both of them"), "Which of the 3 dogs do you mean?"),
         (
-            ("zoom in on the dog", "no, 2x"),
+            ("zoom in on the dog", "no, 20 percent"),
             "A thing I zoom in on fills the view. Shall I do that, or zoom where I look now?",
         ),
         (("how many dogs are there?", "and altogether?"), "What shall I add up? Please name the things to count."),

@@ -194,10 +194,10 @@ def test_unclear_instructions_lead_to_a_question() -> None:
     [
         ("zoom in 2x", "I zoomed in 2x; the camera is now at pan 0.0, tilt 0.0, zoom 2.0x."),
         ("zoom in 4x, then zoom out by a factor of 2", "I zoomed out 2x; the camera is now at pan 0.0, tilt 0.0,"),
-        ("zoom out 2x", "I did not move: the camera is already zoomed out as far as it can go; the camera is now at pan 0.0,"),
+        ("zoom out 2x", "I did not move: the camera is already zoomed out as far as it can go."),
         (
             "pan right 30 and go back",
-            "I went back to where the camera was before; the camera is now at pan 0.0, tilt 0.0, zoom 1.0x.",
+            "I went back: the camera is at pan 0.0, tilt 0.0, zoom 1.0x again.",
         ),
     ],
 )

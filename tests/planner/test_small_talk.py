@@ -36,6 +36,23 @@ def test_a_greeting_is_answered_with_an_example(instruction: str) -> None:
     assert text.startswith("Hello. ") and "how many people are there?" in text
 
 
+@pytest.mark.parametrize("instruction", ["never mind", "ok. never mind", "oh, forget it", "nvm"])
+def test_what_is_no_longer_wanted_is_dropped(instruction: str) -> None:
+    assert reply_to(instruction) == ("answered", "OK.")
+
+
+@pytest.mark.parametrize("instruction", ["say again", "come again?", "what did you say?", "could you say that again, please?"])
+def test_the_last_reply_is_repeated(instruction: str) -> None:
+    stage = Stage([3])
+    asked = stage.turn("zoom in on it", (counted := stage.turn("how many cones are there?"),))
+    repeated = stage.turn(instruction, (counted, asked))
+    assert repeated.reply == asked.reply == "Which of the 3 cones do you mean?"
+    stage.calls.clear()
+    stage.looks = [True]
+    stage.turn("the left one", (counted, asked, repeated))
+    assert stage.calls == [("zoom_to_object", {"description": "left cone"})]
+
+
 @pytest.mark.parametrize("instruction", ["stop", "please cancel", "stop moving!", "stop panning now", "stop the camera"])
 def test_stop_on_its_own_does_nothing(instruction: str) -> None:
     assert reply_to(instruction) == ("answered", "I am not moving. The camera stays where it is.")

@@ -1,4 +1,4 @@
-"""What the earlier turns of a conversation commanded, and which of their commands still stands."""
+"""What the earlier turns of a conversation commanded, which command still stands, and what an instruction adds to it."""
 
 from __future__ import annotations
 
@@ -22,6 +22,21 @@ class Command:
     text: str
     steps: tuple[Step, ...]
     effect: Effect
+
+
+@dataclass(frozen=True, slots=True)
+class Continuation:
+    """What an instruction stands for, given the earlier turns.
+
+    Attributes:
+        text: The full instruction, such as "pan left a bit" for "a bit more".
+        corrects: Whether it is to be carried out in place of the last command.
+        question: The question to ask the user instead; None if the instruction is clear.
+    """
+
+    text: str
+    corrects: bool = False
+    question: str | None = None
 
 
 def standing_command(commands: Sequence[Command]) -> Command | None:

@@ -4,18 +4,26 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from scope_ptz.planner.grammar import instruction_tree as ast
-from scope_ptz.planner.grammar.binding.commands import Command, correctable_command, standing_command
+from scope_ptz.planner.grammar.binding.commands import Command, Continuation, correctable_command, standing_command
 from scope_ptz.planner.grammar.binding.corrections import (
     asks_for_another_move,
     corrected_text,
+    duration_in_answer,
+    rejects_for_other_way,
     size_in_answer,
+    thing_after_failure,
+    thing_beside_rejected,
     turns_the_other_way,
 )
+from scope_ptz.planner.grammar.binding.further_moves import measured_by_last, more, same_axis_again, share_of_zoom
+from scope_ptz.planner.grammar.binding.overshoots import move_after_overshoot
+from scope_ptz.planner.grammar.binding.repeated_returns import continued_return
 from scope_ptz.planner.grammar.binding.single_moves import SingleMove, single_move, towards
+from scope_ptz.planner.grammar.binding.small_talk import NEVER_MIND
+from scope_ptz.planner.grammar.binding.zoom_factors import factor_for_last_zoom
 from scope_ptz.planner.grammar.execution.camera_history import Effect
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme, lexemes_of
 from scope_ptz.planner.grammar.parsing.instruction_parser import parse
@@ -25,14 +33,6 @@ if TYPE_CHECKING:
     from scope_ptz.planner.base import PastTurn
 
 _MAX_TURNS = 30  # maximum number of earlier turns that are considered
-_NUMBER = r"(?P<number>\d+(?:\.\d+)?)(?: degrees?| deg|°)?"
-_LITTLE = r"(?:just )?(?:a )?(?:little |tiny |wee )?(?:bit|touch|smidge|smidgen|tad|fraction|hair|little)"
-_MORE = re.compile(
-    rf"(?:and |now |ok |okay |yes |please )*(?:(?P<little>{_LITTLE}) (?:more|further)|(?:another|by another) (?P<small>{_LITTLE})"
-    rf"|{_NUMBER} (?:more|further)|(?:another|by another) {_NUMBER.replace('number', 'added')})(?: please)?[.!]*",
-    re.IGNORECASE,
-)
-_SAME = re.compile(r"(?:and |now |ok |okay |yes |please )*(?:more|further|keep going|some more)(?: please)?[.!]*", re.IGNORECASE)
 _NEIGHBOUR = re.compile(
     r"(?:and |now |ok |okay |please )*(?:(?:go|move|switch|jump|on) (?:on )?to |show (?:me )?)?"
     r"(?:the )?(?P<which>next|following|previous)"
@@ -43,7 +43,6 @@ _PICTURES = re.compile(
     r"(?:and )?(?:another(?: one)?|one more|(?P<number>two|three|four|five|\d) more)(?: please)?[.!]*", re.IGNORECASE
 )
 _NOW = re.compile(r"(?:and |what about |how about )?now\?*", re.IGNORECASE)
-_FOR = re.compile(r"for (.+ (?:seconds?|minutes?))[.!]*", re.IGNORECASE)
 _CORRECTION = re.compile(r"(?:no|nope|sorry|wait|oops|i meant|i mean|i said|make that|make it|actually)\b", re.IGNORECASE)
 _ASKED = re.compile(r"By (?:how many degrees|what factor) shall I (?:pan|tilt|zoom) (left|right|up|down|in|out)\?")
 """The question about "the other way", which the next turn may answer with an amount."""
@@ -51,29 +50,13 @@ _ASKED = re.compile(r"By (?:how many degrees|what factor) shall I (?:pan|tilt|zo
 _NO_LEAD = "(FILLER|oh|COMMA|DASH|STOP)* (no|nope|nah|oops|wait|sorry) (FILLER|no|wait|sorry|COMMA|DASH|STOP)*"
 """Words before a command that reject the last one."""
 
-_SHARE = "(FILLER|AND|THEN)* ((?P<fraction>FRACTION)|(?P<twice>TWICE)) (of)? (that|it) (FILLER|AGAINWORD)*"
+_ZOOM_BACK = "(ZOOM|go|come|FILLER)* (back_out|back_in) (FILLER|AGAINWORD|STOP)*"
+_ANY_WAY = "Which way do you mean: left, right, up, down, in or out?"
+
 _MAX_LEXEMES = 16  # longer instructions neither continue nor correct an earlier turn
 _DONE_WITHOUT_CALLS = (ast.CameraState, ast.Help)
-FILLS_THE_VIEW = "A thing I zoom in on fills the view. Shall I do that, or zoom where I look now?"
-"""The question about a factor for a zoom on a thing."""
-
 NOTHING_DONE = "Then I do nothing. What shall I do instead?"
 """The reply to a bare "no" and to a command that is withdrawn."""
-
-
-@dataclass(frozen=True, slots=True)
-class Continuation:
-    """What an instruction stands for, given the earlier turns.
-
-    Attributes:
-        text: The full instruction, such as "pan left a bit" for "a bit more".
-        corrects: Whether it is to be carried out in place of the last command.
-        question: The question to ask the user instead; None if the instruction is clear.
-    """
-
-    text: str
-    corrects: bool = False
-    question: str | None = None
 
 
 def continuation_of(instruction: str, conversation: Sequence[PastTurn], presets: tuple[str, ...]) -> Continuation:
@@ -104,7 +87,7 @@ def _effect(turn: PastTurn, steps: Sequence[ast.Step], before: Sequence[Command]
         return "returned"
     if was_done:
         return "corrected" if corrects else "done"
-    if turn.reply == NOTHING_DONE and before and before[-1].effect in {"done", "corrected"}:
+    if turn.reply in {NOTHING_DONE, NEVER_MIND} and before and before[-1].effect in {"done", "corrected"}:
         return "rejected"
     return "done" if steps and all(isinstance(step, _DONE_WITHOUT_CALLS) for step in steps) else "nothing"
 
@@ -129,29 +112,36 @@ def _continuation(
         return Continuation(instruction)
     if (wanted := _return_after_no(lexemes, said, presets)) is not None:
         return Continuation(wanted)
+    if (lead := match_start(_NO_LEAD, lexemes)) is not None and full_match(_ZOOM_BACK, lexemes[lead.size :]):
+        instruction = said = said[lexemes[lead.size].start :]  # "no, back out"
+        lexemes = lexemes[lead.size :]
+    if (returned := continued_return(lexemes, said, commands, conversation)) is not None:
+        return returned
     last = standing_command(commands)
     if (answered := _answer_about_other_way(lexemes, conversation[-1], last)) is not None:
         return Continuation(answered)
     if (neighbour := _neighbour(said, conversation, presets)) is not None:
         return Continuation(f"go to preset {neighbour}")
+    if (meant := _about_same_command(lexemes, said, commands, conversation)) is not None:
+        return meant
     if (wrong := correctable_command(commands)) is not None:
         was_rejected = commands[-1].effect == "rejected"
-        if (meant := corrected_text(lexemes, said, wrong, was_rejected=was_rejected)) is not None:
-            return Continuation(meant, corrects=True)
+        if (text := corrected_text(lexemes, said, wrong, was_rejected=was_rejected)) is not None:
+            return Continuation(text, corrects=True)
+    if rejects_for_other_way(lexemes):
+        return Continuation(said, question=_ANY_WAY)
     if last is None:
         return Continuation(instruction)
-    if _amount_after_close_up(lexemes, last):
-        return Continuation(said, question=FILLS_THE_VIEW)
     move = single_move(last.steps)
     if move is not None and turns_the_other_way(lexemes):
         return _other_way(said, lexemes, move)
     if (changed := _changed_instruction(said, last)) is not None:
         return Continuation(changed)
-    if (meant := _corrected_within(said, last, presets)) is not None:
-        return Continuation(meant, corrects=True)
-    if (again := _same_axis_again(said, lexemes, commands, presets) or _share_of_zoom(lexemes, move)) is not None:
+    if (text := _corrected_within(said, last, presets)) is not None:
+        return Continuation(text, corrects=True)
+    if (again := same_axis_again(said, lexemes, commands, presets) or share_of_zoom(lexemes, move)) is not None:
         return Continuation(again)
-    return Continuation(_more(said, move) or _measured_by_last(said, last, presets) or instruction)
+    return Continuation(more(lexemes, said, last) or measured_by_last(said, last, presets) or instruction)
 
 
 def _return_after_no(lexemes: Sequence[Lexeme], said: str, presets: tuple[str, ...]) -> str | None:
@@ -164,10 +154,23 @@ def _return_after_no(lexemes: Sequence[Lexeme], said: str, presets: tuple[str, .
     return wanted if steps and all(_returns(step, is_trip_back=False) for step in steps) else None
 
 
-def _amount_after_close_up(lexemes: Sequence[Lexeme], last: Command) -> bool:
-    """Return whether a correction only names a factor, such as "no, 2x", although the last command zoomed in on a thing."""
-    is_close_up = len(last.steps) == 1 and isinstance(last.steps[0], ast.ZoomTo)
-    return is_close_up and full_match(f"{_NO_LEAD} (make it|by|to|FILLER)* NUM (X|PERCENT) (FILLER|STOP)*", lexemes) is not None
+def _about_same_command(
+    lexemes: Sequence[Lexeme], said: str, commands: Sequence[Command], conversation: Sequence[PastTurn]
+) -> Continuation | None:
+    """Return what a factor, a duration, a thing or a complaint stands for after the last command; None for other instructions."""
+    if (text := thing_after_failure(lexemes, said, commands[-1], conversation[-1])) is not None:
+        return Continuation(text)
+    last = standing_command(commands)
+    turn = None if last is None else next(conversation[i] for i in reversed(range(len(commands))) if commands[i] is last)
+    if (undershot := move_after_overshoot(lexemes, said, last, turn)) is not None:
+        return undershot
+    if last is None or turn is None:
+        return None
+    if (text := duration_in_answer(lexemes, last)) is not None:
+        return Continuation(text)
+    if (text := thing_beside_rejected(lexemes, last, turn)) is not None:
+        return Continuation(text, corrects=True)
+    return factor_for_last_zoom(lexemes, last, turn)
 
 
 def _answer_about_other_way(lexemes: Sequence[Lexeme], turn: PastTurn, last: Command | None) -> str | None:
@@ -188,67 +191,8 @@ def _other_way(said: str, lexemes: Sequence[Lexeme], move: SingleMove) -> Contin
     return Continuation(said, question=f"{amount} shall I {other.axis} {other.way}?")
 
 
-def _more(said: str, move: SingleMove | None) -> str | None:
-    """Return the move of "a bit more" or "another 10" after a move; None for other instructions."""
-    match = _MORE.fullmatch(said)
-    if move is None or (match is None and not _SAME.fullmatch(said)):
-        return None
-    if match is None:
-        return "again"
-    number = match["number"] or match["added"]
-    if number and move.axis == "zoom":
-        return None
-    return f"{move.axis} {move.way} {number} degrees" if number else f"{move.axis} {move.way} a bit"
-
-
-def _measured_by_last(said: str, last: Command, presets: tuple[str, ...]) -> str | None:
-    """Return the move of an instruction that needs the last move, about one axis, to be understood: "back 5"."""
-    alone = parse(said, presets).steps
-    if single_move(last.steps) is None or alone is None or not any(isinstance(step, ast.Unclear) for step in alone):
-        return None
-    together = parse(f"{last.text.rstrip('.!? ')}, {said}", presets).steps
-    if together is None or len(together) != 2 or together[:1] != last.steps:
-        return None
-    move = single_move(together[1:])
-    return move.text if move is not None else None
-
-
-def _same_axis_again(said: str, lexemes: Sequence[Lexeme], commands: Sequence[Command], presets: tuple[str, ...]) -> str | None:
-    """Return the amount that "pan left again" or "zoom back out" takes from the last move about that axis; None for others.
-
-    In the same direction, it repeats that move. In the other direction, it undoes it.
-    """
-    is_again = any(x.has("AGAINWORD") or x.word in {"back_out", "back_in"} for x in lexemes)
-    if not is_again or any(x.has("NUM", "LITTLE", "LOT", "LIMIT", "FRACTION") for x in lexemes):
-        return None
-    wanted = single_move(parse(said, presets).steps or ())
-    if wanted is None:
-        return None
-    for command in reversed(commands):
-        if command.effect not in {"done", "corrected"}:
-            return None
-        if wanted.axis == "zoom" and wanted.way == "out" and len(command.steps) == 1 and isinstance(command.steps[0], ast.ZoomTo):
-            return "undo the zoom"
-        if (move := single_move(command.steps)) is None or move.axis != wanted.axis:
-            continue
-        if move.way == wanted.way:
-            return move.text if any(x.has("AGAINWORD") for x in lexemes) else None
-        return "undo the zoom" if move.axis == "zoom" else move.reversed().text
-    return None
-
-
-def _share_of_zoom(lexemes: Sequence[Lexeme], move: SingleMove | None) -> str | None:
-    """Return the zoom to a multiple of the current magnification: "half of that", "double that" after a zoom."""
-    match = full_match(_SHARE, lexemes)
-    if match is None or move is None or move.axis != "zoom":
-        return None
-    factor = match["fraction"][0].value if match.has("fraction") else 2.0
-    share = SingleMove("zoom", "in" if factor >= 1 else "out", f"{max(factor, 1 / factor):g} times")
-    return "undo the zoom" if share == move.reversed() else share.text
-
-
 def _changed_instruction(said: str, last: Command) -> str | None:
-    """Return the last instruction as changed by an addition ("two more", "and now?", "for 20 seconds"); None for others."""
+    """Return the last instruction as changed by an addition ("two more", "and now?"); None for others."""
     if len(last.steps) != 1:
         return None
     (step,) = last.steps
@@ -256,8 +200,6 @@ def _changed_instruction(said: str, last: Command) -> str | None:
         return f"take {more['number'] or 'another'} {'pictures' if more['number'] else 'picture'}"
     if isinstance(step, ast.Count | ast.Ask) and _NOW.fullmatch(said):
         return last.text
-    if isinstance(step, ast.Track) and step.thing.text and (time := _FOR.fullmatch(said)) is not None:
-        return f"follow the {step.thing.text} for {time[1]}"
     return None
 
 

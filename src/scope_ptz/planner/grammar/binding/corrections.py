@@ -3,15 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from scope_ptz.planner.grammar import instruction_tree as ast
 from scope_ptz.planner.grammar.binding.commands import Command
+from scope_ptz.planner.grammar.binding.focus import foci_of
+from scope_ptz.planner.grammar.binding.noun_heads import head_noun, names_several
 from scope_ptz.planner.grammar.binding.single_moves import SingleMove, axis_of_way, single_move, towards
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 from scope_ptz.planner.grammar.parsing.instruction_parser import parse
 from scope_ptz.planner.grammar.parsing.parts.noun_phrases import is_noun_phrase
 from scope_ptz.planner.grammar.parsing.parts.patterns import Match, full_match, match_start
 from scope_ptz.planner.grammar.parsing.rewording.repairs import EDITING, NEW_AMOUNT, NEW_WAY
+
+if TYPE_CHECKING:
+    from scope_ptz.planner.base import PastTurn
 
 _PAUSE = "(COMMA|STOP|DASH)"
 _CLAIM = (
@@ -30,6 +36,11 @@ _SIZE_IN_ANSWER = (
     r"(by|DET|AMOUNTISH|FILLER)* ((?P<number>NUM) (DEG|X|PERCENT)?|(?P<same>(SAMEAMOUNT|same (amount|angle)?|as_before) "
     r"(as before|as last_time|amount|as (much|far))?)|(?P<little>LITTLE)|(?P<lot>LOT)|(?P<limit>LIMIT)) (FILLER|AGAINWORD|STOP)*"
 )
+_ON_SIDE = "DET (one (on|to) DET ((?P<left>LEFT)|(?P<right>RIGHT)) (SIDE)?|((?P<left>LEFT)|(?P<right>RIGHT)) one)"
+_DURATION = (
+    rf"(?P<editing>{_CORRECTING})? (it|him|her|them|just|only|make|FILLER)* (?P<for>for)? (just|only)? (?P<number>NUM) "
+    rf"(?P<unit>SECONDS|MINUTES)? (INSTEAD|FILLER|{_PAUSE})*"
+)
 _HESITATION = "(FILLER|wait|hang_on|hold_on|hang on|hold on)+"
 _OTHER_NUMBER = "DET? (?P<which>ORDINAL) (one|PRESETNOUN)?"
 _SIZES = {"little": "a bit", "lot": "a lot", "limit": "all the way"}
@@ -47,7 +58,7 @@ def corrected_text(lexemes: Sequence[Lexeme], text: str, last: Command, *, was_r
         was_rejected: Whether the user has rejected the command, and now says what to do instead, without "no" or "I meant".
     """
     move = single_move(last.steps)
-    if full_match(_WRONG_WAY, lexemes) or full_match(_NO_OTHER_WAY, lexemes):
+    if rejects_for_other_way(lexemes):
         return move.reversed().text if move is not None else None
     editing = match_start(_CORRECTING, lexemes)
     size = editing.size if editing is not None else 0
@@ -72,6 +83,64 @@ def corrected_text(lexemes: Sequence[Lexeme], text: str, last: Command, *, was_r
         return command if is_move else None  # "sorry, pan left" may be another command
     changed = _changed_move(move, rest) if move is not None else None
     return changed.text if changed is not None else None
+
+
+def thing_after_failure(lexemes: Sequence[Lexeme], text: str, last: Command, turn: PastTurn) -> str | None:
+    """Return the last command for another thing if its own was not understood: "no, the van" after "zoom in on the lorrry".
+
+    Args:
+        lexemes: The lexemes of the text.
+        text: The user's text, which may also name the thing without "no".
+        last: The command of the last turn.
+        turn: The last turn.
+    """
+    outcomes = [outcome for exchange in turn.exchanges for outcome in exchange.outcomes]
+    if len(last.steps) != 1 or not outcomes or any(outcome.error is None for outcome in outcomes):
+        return None
+    step, editing = last.steps[0], match_start(_CORRECTING, lexemes)
+    rest = _without_edges(lexemes[editing.size if editing is not None else 0 :])
+    if not isinstance(step, ast.ZoomTo | ast.Track | ast.Count) or not rest or any(x.has("NOT", "OR", *_VERBS) for x in rest):
+        return None
+    if editing is None and any(x.has("PRESET") for x in rest):
+        return None  # "the gate" may be the preset
+    thing = text[rest[0].start : rest[-1].end]
+    if editing is not None and not _is_bare_no(lexemes[: editing.size]) and all(x.has("FREE") for x in rest):
+        return _about(step, f"the {thing}" if not isinstance(step, ast.Count) else thing)  # "no, road roller"
+    return _with_other_thing(step, thing, rest)
+
+
+def thing_beside_rejected(lexemes: Sequence[Lexeme], last: Command, turn: PastTurn) -> str | None:
+    """Return the close-up of "no, the one on the right": of a thing to the right of the one that the camera zoomed in on.
+
+    None for other texts, and if it is not known which single thing that was.
+    """
+    match = full_match(f"{_CORRECTING} {_ON_SIDE} (FILLER|INSTEAD|{_PAUSE})*", lexemes)
+    if match is None or len(last.steps) != 1 or not isinstance(last.steps[0], ast.ZoomTo):
+        return None
+    rejected = foci_of([turn])[-1:]
+    if not rejected or rejected[0].number != 1 or names_several(rejected[0].description):
+        return None
+    side = "left" if match.has("left") else "right"
+    kind = head_noun(rejected[0].description)
+    return f"zoom in on the {kind} to the {side} of the {rejected[0].description}"
+
+
+def duration_in_answer(lexemes: Sequence[Lexeme], last: Command) -> str | None:
+    """Return the last pursuit with another duration: "no, 10" or "for 10 seconds" after "follow him for 5 seconds"."""
+    match = full_match(_DURATION, lexemes)
+    if match is None or len(last.steps) != 1 or not isinstance(last.steps[0], ast.Track):
+        return None
+    if not (match.has("editing") or match.has("for") or match.has("unit")):
+        return None
+    thing = last.steps[0].thing
+    followed = f"the {thing.text}" if thing.text else thing.pronoun or "it"
+    unit = "minutes" if match.has("unit") and match["unit"][0].has("MINUTES") else "seconds"
+    return f"follow {followed} for {match['number'][0].value:g} {unit}"
+
+
+def rejects_for_other_way(lexemes: Sequence[Lexeme]) -> bool:
+    """Return whether a text rejects the last move for the other direction: "wrong way", "no, the other way"."""
+    return bool(full_match(_WRONG_WAY, lexemes) or full_match(_NO_OTHER_WAY, lexemes))
 
 
 def turns_the_other_way(lexemes: Sequence[Lexeme]) -> bool:
@@ -134,8 +203,11 @@ def _with_other_thing(step: ast.Step, thing: str, lexemes: Sequence[Lexeme]) -> 
     """Return the command for another thing: "zoom in on the red one"."""
     if isinstance(step, ast.ZoomTo) and lexemes[0].word in {"on", "onto"} and len(lexemes) > 1:
         lexemes, thing = lexemes[1:], thing[lexemes[1].start - lexemes[0].start :]  # "no, on the van"
-    if not (lexemes[0].has("DET") and len(lexemes) > 1 and is_noun_phrase(lexemes)):
-        return None
+    return _about(step, thing) if lexemes[0].has("DET") and len(lexemes) > 1 and is_noun_phrase(lexemes) else None
+
+
+def _about(step: ast.Step, thing: str) -> str:
+    """Return a command to zoom in on, follow or count a thing."""
     if isinstance(step, ast.ZoomTo):
         return f"zoom in on {thing}"
     if isinstance(step, ast.Track):
@@ -155,7 +227,7 @@ def _may_approve(editing: Sequence[Lexeme], rest: Sequence[Lexeme]) -> bool:
 
 
 def _without_edges(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
-    """Return lexemes without courtesy and punctuation at their ends."""
-    edge = ("STOP", "COMMA", "FILLER", "DASH")
+    """Return lexemes without courtesy, "instead" and punctuation at their ends."""
+    edge = ("STOP", "COMMA", "FILLER", "DASH", "INSTEAD")
     kept = [i for i, x in enumerate(lexemes) if not x.has(*edge)]
     return lexemes[kept[0] : kept[-1] + 1] if kept else ()

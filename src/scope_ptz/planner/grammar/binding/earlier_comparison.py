@@ -105,6 +105,19 @@ def earlier_winners(conversation: Sequence[PastTurn], presets: tuple[str, ...]) 
     return None
 
 
+def left_view_won(conversation: Sequence[PastTurn], presets: tuple[str, ...]) -> bool:
+    """Return whether the last turn with calls found more objects in the view that the camera then left than at a preset."""
+    last = next((turn for turn in reversed(conversation) if turn.exchanges), None)
+    steps = (parse(last.instruction, presets).steps or ()) if last is not None else ()
+    if last is None or len(steps) != 1 or not isinstance(step := steps[0], ast.BeforeAfter) or step.than_at is None:
+        return False
+    outcomes = [outcome for exchange in last.exchanges for outcome in exchange.outcomes]
+    numbers = [int(o.result["count"]) for o in outcomes if o.call.name == "count_objects" and o.result is not None]
+    if len(numbers) != 2:
+        return False
+    return numbers[0] > numbers[1] if step.comparison == "more" else numbers[0] < numbers[1]
+
+
 def _comparison_of(step: ast.Step) -> ast.WhichPreset | None:
     """Return a step as a comparison of presets, which "which has more?" also asks for; None for other steps."""
     if isinstance(step, ast.Ask) and (way := bare_comparison(step.question)) is not None:

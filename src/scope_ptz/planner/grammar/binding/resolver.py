@@ -10,8 +10,13 @@ from scope_ptz.english import listing
 from scope_ptz.planner.grammar import instruction_tree as ast
 from scope_ptz.planner.grammar.binding.asked_things import asked_thing
 from scope_ptz.planner.grammar.binding.commands import standing_command
-from scope_ptz.planner.grammar.binding.continuations import FILLS_THE_VIEW, commands_of
-from scope_ptz.planner.grammar.binding.earlier_comparison import counts_of_tour, earlier_winners, last_two_presets
+from scope_ptz.planner.grammar.binding.continuations import commands_of
+from scope_ptz.planner.grammar.binding.earlier_comparison import (
+    counts_of_tour,
+    earlier_winners,
+    last_two_presets,
+    left_view_won,
+)
 from scope_ptz.planner.grammar.binding.embedded_questions import direct_question
 from scope_ptz.planner.grammar.binding.focus import latest_counts
 from scope_ptz.planner.grammar.binding.followup_steps import FollowUpSteps
@@ -37,6 +42,7 @@ from scope_ptz.planner.grammar.binding.question_text import (
     two_questions,
     with_subject,
 )
+from scope_ptz.planner.grammar.binding.zoom_factors import FILLS_THE_VIEW
 from scope_ptz.planner.grammar.execution.answer_sentences import noun
 
 _THE_THING_AND_IT = re.compile(r"\bthe \w+.*\b(it|they|them)\b")
@@ -164,6 +170,8 @@ class Resolver(FollowUpSteps):
             if len(winners) != 1:
                 raise UnresolvedError(f"Where is 'there'? {listing(winners, 'and')} show the same number.")
             return [ast.GoToPreset(ast.PresetRef(winners[0], explicit=True))]
+        if left_view_won(self.conversation, self.presets or ()):
+            return [ast.Back()]
         if not self.preset:
             raise UnresolvedError("Where is 'there'? Please name a preset.")
         return [ast.GoToPreset(ast.PresetRef(self.preset, explicit=True))]
@@ -381,7 +389,8 @@ class Resolver(FollowUpSteps):
         return [replace(step, first=first, second=second, view=self._view(step.view))]
 
     def _beforeafter(self, step: ast.BeforeAfter) -> Sequence[ast.Step]:
-        return [replace(step, thing=self.thing(step.thing), moves=self.bind(step.moves))]
+        than_at = self.place(step.than_at) if step.than_at is not None else None
+        return [replace(step, thing=self.thing(step.thing), moves=self.bind(step.moves), than_at=than_at)]
 
     def condition(self, condition: ast.Condition) -> ast.Condition:
         """Return a condition with its names resolved."""

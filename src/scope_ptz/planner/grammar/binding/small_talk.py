@@ -87,6 +87,26 @@ def _has_thanks(sentence: Sequence[Lexeme]) -> bool:
     return any(word in _THANKS for x in sentence if x.has("FILLER") for word in x.word.split("_"))
 
 
+NEVER_MIND = "OK."
+"""The reply to a user who no longer wants what was spoken of."""
+
+_NEVER_MIND = "(FILLER|no|oh|actually|COMMA|STOP|DASH)* (never mind|nevermind|nvm|nm|forget (about)? it) (FILLER|THEN|COMMA|STOP)*"
+_SAY_AGAIN = (
+    "(FILLER|MODAL SELF|COMMA|STOP|DASH)* (say_again|(say|come) (that|it|this)? again|pardon|pardon_me|SELF beg your pardon|"
+    "what DOV SELF (FILLER)* say|repeat (your|DET|last|that)* (answer|reply|message)) (FILLER|COMMA|STOP|QUESTION)*"
+)
+
+
+def dismisses(instruction: str) -> bool:
+    """Return whether a text only says that nothing is wanted any more: "ok, never mind"."""
+    return full_match(_NEVER_MIND, lexemes_of(instruction)) is not None
+
+
+def asks_to_repeat_reply(instruction: str) -> bool:
+    """Return whether a text asks for the last reply once more: "say again", "come again?", "what did you say?"."""
+    return full_match(_SAY_AGAIN, lexemes_of(instruction)) is not None
+
+
 _SWITCHING = "(switch|turn|put|flick|flip) (DET|FREE)* (on|off) (DET|FREE)*"
 _SPEAKING = "(tell|inform|ask|order|remind|warn|instruct|call|phone|ring|radio|alert|notify|page) (DET)? (FREE)+ (_)*"
 _HANDLING = (

@@ -15,7 +15,7 @@ from scope_ptz.planner.grammar.binding.followups import followup_of, question_ab
 from scope_ptz.planner.grammar.binding.names import UnresolvedError
 from scope_ptz.planner.grammar.binding.offtopic import REFUSAL, is_harmful
 from scope_ptz.planner.grammar.binding.resolver import Resolver
-from scope_ptz.planner.grammar.binding.small_talk import reply_to_small_talk
+from scope_ptz.planner.grammar.binding.small_talk import NEVER_MIND, asks_to_repeat_reply, dismisses, reply_to_small_talk
 from scope_ptz.planner.grammar.consistency.check import (
     not_understood,
     objection,
@@ -67,6 +67,12 @@ def understand(instruction: str, presets: Sequence[str] | None, conversation: Se
         return Understanding(refusal=REFUSAL)
     if reply := reply_to_small_talk(instruction):
         return Understanding((ast.Reply(reply),))
+    if dismisses(instruction):
+        return Understanding((ast.Reply(NEVER_MIND),))
+    if conversation and asks_to_repeat_reply(instruction):
+        return Understanding((ast.Reply(conversation[-1].reply),))
+    while conversation and asks_to_repeat_reply(conversation[-1].instruction):
+        conversation = conversation[:-1]  # a question that was repeated can still be answered
     preset_names = None if presets is None else tuple(presets)
     if _NO.fullmatch(instruction.strip()):
         return Understanding(clarification=NOTHING_DONE)

@@ -102,6 +102,11 @@ def position_history(conversation: Sequence[PastTurn], effects: Sequence[Effect]
     return PositionHistory(preset, tuple(stack), left, corrected, start)
 
 
+def pose_after(turn: PastTurn) -> Pose | None:
+    """Return the camera's pose after a turn; None if no result of the turn states it."""
+    return _after(turn, None, home=False)[0]
+
+
 def _known(viewpoint: str | None, has_viewpoints: bool) -> str | None:
     """Return the viewpoint of an earlier turn: empty if it is unknown, None for a camera that has a single one."""
     return (viewpoint or "") if has_viewpoints else None

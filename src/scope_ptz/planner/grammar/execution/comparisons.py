@@ -35,17 +35,22 @@ class ComparisonSteps(ConditionEvaluation):
     def _count_at(self, thing: ast.Thing, place: ast.PresetRef | None, view: View | None = None) -> CallGenerator:
         """Go to a preset, if one is given, and return the number of objects that are visible there."""
         if place is not None:
-            yield from self._camera_call("go_to_preset", name=place.name)
-            self._record_position(place.name)
+            yield from self._survey(place)
         return (yield from self._visible_count(thing.text, view))
+
+    def _survey(self, place: ast.PresetRef) -> CallGenerator:
+        """Go to a preset of several, without a sentence that says so."""
+        before = self.surveyed
+        yield from self._camera_call("go_to_preset", name=place.name)
+        self._record_position(place.name)
+        self.surveyed = (*before, place.name)
 
     def _tour(self, stops: Sequence[Stop]) -> CallGenerator:
         """Count the same objects at several presets, and report the counts together."""
         seen: list[tuple[ast.Tally, int]] = []
         unclear: dict[str, list[str]] = {}
         for place, thing in stops:
-            yield from self._camera_call("go_to_preset", name=place.name)
-            self._record_position(place.name)
+            yield from self._survey(place)
             result = yield from self._perception_call("count_objects", description=thing.text, view="current")
             self._last_was_yes = result["count"] > 0 if result is not None else None
             if result is not None and not result["count"] and not result.get("complete", True):
@@ -110,6 +115,14 @@ class ComparisonSteps(ConditionEvaluation):
         before = yield from self._visible_count(text, "current")
         yield from self._run_steps(step.moves)
         after = yield from self._visible_count(text, "current")
+        if step.than_at is not None:
+            met = before > after if step.comparison == "more" else before < after
+            self._last_was_yes = met
+            self._note(
+                f"{'Yes' if met else 'No'}: I could see {phrases.counted(text, before)} before, "
+                f"and I can see {phrases.counted(text, after)} at {step.than_at.name}"
+            )
+            return
         self._note(f"I can see {phrases.counted(text, before)} before the move and {phrases.counted(text, after)} after it")
         if before == after:
             self._note("The number is the same before and after")
@@ -145,7 +158,7 @@ class ComparisonSteps(ConditionEvaluation):
         for place in step.places:
             count = yield from self._count_at(step.thing, place)
             if count or self.assume_met:
-                self._best_preset, self._last_was_yes = place.name, True
+                self._best_preset, self._last_was_yes, self.surveyed = place.name, True, ()
                 counted = phrases.counted(step.thing.text, count)
                 self._note(f"The {'last' if step.last else 'first'} is {place.name}, where I can see {counted}")
                 return

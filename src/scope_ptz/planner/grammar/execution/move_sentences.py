@@ -49,6 +49,16 @@ def report_of_move(arguments: Mapping[str, Any], made: Mapping[str, Any], result
     return f"I did not move: the camera is already {english.listing(limits)}" if limits else f"I {done}{shortfall}"
 
 
+def report_of_return(place: str, shortfall: str = "") -> str:
+    """State that the camera went back: "I went back: the camera is at preset yard again".
+
+    Args:
+        place: Where the camera is now: a preset, the home view or a pose, in words.
+        shortfall: Why the camera did not get all the way back, as ``shortfall_text`` returns it; empty if it did.
+    """
+    return f"I went back{shortfall}; the camera is now at {place}" if shortfall else f"I went back: the camera is at {place} again"
+
+
 def _limit_text(axis: str, arguments: Mapping[str, Any]) -> str:
     """Return where the camera is at an axis's limit: "zoomed out as far as it can go"; empty if the move does not use the axis."""
     if axis == "zoom":

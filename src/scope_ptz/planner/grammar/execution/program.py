@@ -18,7 +18,7 @@ from scope_ptz.geometry import Pose
 from scope_ptz.planner.grammar import instruction_tree as ast
 from scope_ptz.planner.grammar.execution import answer_sentences as phrases
 from scope_ptz.planner.grammar.execution import move_sentences as motion
-from scope_ptz.planner.grammar.execution.camera_history import VisitedPosition
+from scope_ptz.planner.grammar.execution.camera_history import VisitedPosition, is_same_pose
 from scope_ptz.planner.grammar.execution.closer_look import is_too_small
 from scope_ptz.planner.grammar.execution.comparisons import ComparisonSteps, stops_of_tour
 from scope_ptz.planner.grammar.execution.condition_evaluation import reading_question
@@ -49,6 +49,8 @@ class Program(ReturnSteps, ComparisonSteps):
             yield from self._run_steps(steps)
         except HaltedError as halt:
             self._note(str(halt))
+        if len(self.surveyed) > 1 and self.surveyed[-1] != self.positions.preset:
+            self._note(f"The camera is now at {self.surveyed[-1]}")
 
     @property
     def offer(self) -> Offer | None:
@@ -82,7 +84,8 @@ class Program(ReturnSteps, ComparisonSteps):
         shortfall = self._shortfall_text(result, unlimited_pose_after(arguments, start, self.limits))
         moved = return_arguments(self.pose, start, self.limits) if shortfall else arguments
         report = motion.report_of_move(arguments, moved, result, shortfall)
-        self._note(f"{report}; the camera is now at {phrases.pose_text(result['pose'])}")
+        is_still = is_same_pose(self.pose, start)
+        self._note(report if is_still else f"{report}; the camera is now at {phrases.pose_text(result['pose'])}")
 
     def _record_position(self, preset: str | None, home: bool = False) -> None:
         self._visited.append(VisitedPosition(self.pose, preset, home, self.viewpoint))

@@ -28,12 +28,8 @@ class ReturnSteps(RunState):
         """Make a relative or absolute move."""
 
     @abstractmethod
-    def _home(self, step: ast.Home) -> CallGenerator:
-        """Go to the home view."""
-
-    @abstractmethod
-    def _gotopreset(self, step: ast.GoToPreset) -> CallGenerator:
-        """Go to a preset."""
+    def _record_position(self, preset: str | None, home: bool = False) -> None:
+        """Record the camera's position, so that later steps can return to it."""
 
     def _back(self, step: ast.Back) -> CallGenerator:
         place = self._visited[-1]
@@ -91,9 +87,14 @@ class ReturnSteps(RunState):
         """Go to an earlier position. That of another viewpoint is reached by way of a preset there."""
         is_other = place.viewpoint != self.viewpoint
         if place.preset:
-            yield from self._gotopreset(ast.GoToPreset(ast.PresetRef(place.preset)))
+            result = yield from self._camera_call("go_to_preset", name=place.preset)
+            self._record_position(place.preset)
+            self._note(motion.report_of_return(f"preset {place.preset}", motion.shortfall_text(result)))
         elif place.home:
-            yield from self._home(ast.Home())
+            result = yield from self._camera_call("go_home")
+            self._went_home = True
+            self._record_position(None, home=True)
+            self._note(motion.report_of_return("the home view", motion.shortfall_text(result)))
         elif not is_other and place.viewpoint != "":
             yield from self._turn_back(place.pose)
         else:
@@ -104,20 +105,12 @@ class ReturnSteps(RunState):
             yield from self._camera_call("go_to_preset", name=preset)
             if arguments := return_arguments(place.pose, self.pose, self.limits):
                 yield from self._camera_call("adjust_ptz", **arguments)
-            self._note(
-                f"I went back to where the camera was, by way of preset {preset}; "
-                f"it is now at {phrases.pose_text(self.pose.as_dict())}"
-            )
+            self._note(motion.report_of_return(phrases.pose_text(self.pose.as_dict())))
 
     def _turn_back(self, pose: Pose) -> CallGenerator:
         """Return to a pose of the current viewpoint."""
-        start = self.pose
-        result = yield from self._camera_call("adjust_ptz", **return_arguments(pose, start, self.limits))
-        # Report a move that was cut short as the camera made it.
-        moved = return_arguments(self.pose, start, self.limits)
-        done = motion.move_text(moved) if set(moved) <= {"zoom_factor"} else "went back to where the camera was before"
-        shortfall = self._shortfall_text(result, pose)
-        self._note(f"I {done}{shortfall}; the camera is now at {phrases.pose_text(result['pose'])}")
+        result = yield from self._camera_call("adjust_ptz", **return_arguments(pose, self.pose, self.limits))
+        self._note(motion.report_of_return(phrases.pose_text(result["pose"]), self._shortfall_text(result, pose)))
 
     def _instead(self, step: ast.Instead) -> CallGenerator:
         """Run steps from the position before the previous command."""
@@ -134,21 +127,21 @@ class ReturnSteps(RunState):
             yield from self._run_steps(step.steps)
 
     def _move_instead(self, move: ast.Move, start: Pose) -> CallGenerator:
-        """Move to where a move from another start would have led, and say what the camera did in all."""
+        """Move to where a move from another start would have led, and say what the camera did instead of the corrected move."""
         wanted, before = unlimited_pose_after(arguments_of(move, start, self.limits), start, self.limits), self.pose
         target, clamped = self.limits.clamp(wanted)
         arguments = return_arguments(target, before, self.limits)
         limits = f", as far as the {motion.limits_text(clamped)}" if clamped else ""
         if not arguments and clamped:
-            self._note(f"The camera did not move{limits}; it is at {phrases.pose_text(self.pose.as_dict())}")
+            self._note(motion.report_of_move(arguments_of(move, start, self.limits), {}, {"clamped": clamped}, limits))
             return
         if not arguments:
             self._note(f"The camera is already there: {phrases.pose_text(self.pose.as_dict())}")
             return
         result = yield from self._camera_call("adjust_ptz", **arguments)
         moved = motion.move_text(return_arguments(self.pose, before, self.limits))
-        in_all = return_arguments(self.pose, start, self.limits)
-        total = f"so the camera has {motion.move_text(in_all)} in all" if in_all else "so the camera is back where it was"
+        made = return_arguments(self.pose, start, self.limits)
+        total = f"so the camera has {motion.move_text(made)} instead" if made else "so the camera is back where it was"
         report = f"I {moved}{self._shortfall_text(result, target) or limits}"
         pose = phrases.pose_text(result["pose"])
         self._note(

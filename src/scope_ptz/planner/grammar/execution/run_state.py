@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 _MIN_LISTED_STOPS = 3
 """Minimum number of presets in an answer with a line for each of them."""
 
+_MOVING_TOOLS = frozenset({"adjust_ptz", "go_home", "go_to_preset", "zoom_to_object", "track_object"})
+
 CallRequest = tuple[str, dict[str, Any]]
 """The name and arguments of a requested tool call."""
 
@@ -76,6 +78,7 @@ class RunState:
         notes: The sentences of the answer.
         stops: The indices of the notes with which the report about a preset begins.
         sources: The sources of the perception results.
+        surveyed: The presets that a survey has visited since the last move that a note reports.
     """
 
     limits: Limits
@@ -90,6 +93,7 @@ class RunState:
     notes: list[str] = field(default_factory=list)
     stops: list[int] = field(default_factory=list)
     sources: list[str] = field(default_factory=list)
+    surveyed: tuple[str, ...] = ()
     _not_found: set[str] = field(default_factory=set)  # descriptions of objects that were not found
     _visited: list[VisitedPosition] = field(default_factory=list)  # positions to which "go back" can return
     _best_preset: str | None = None  # the preset for "go there" after a comparison; None if there is no winner
@@ -114,6 +118,7 @@ class RunState:
         if outcome.error is None and result and isinstance(pose := result.get("pose"), dict):
             self.pose = Pose(pose["pan_deg"], pose["tilt_deg"], pose["zoom"])
             self._note_viewpoint(tool, arguments)
+            self.surveyed = () if tool in _MOVING_TOOLS else self.surveyed
         if result and (source := result.get("source")) and source not in self.sources:
             self.sources.append(source)
         return outcome

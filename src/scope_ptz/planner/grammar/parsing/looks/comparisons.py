@@ -14,6 +14,7 @@ from scope_ptz.planner.grammar.instruction_tree import (
     CompareWithBefore,
     Comparison,
     Count,
+    GoToPreset,
     Step,
     Thing,
     Unclear,
@@ -210,7 +211,16 @@ def _is_yes_no(lexemes: Sequence[Lexeme]) -> bool:
 
 
 def _before_after(source: Source, lexemes: Sequence[Lexeme], read_moves: ReadMoves) -> Step | None:
-    """Read comparisons of the counts before and after a move."""
+    """Read comparisons of the counts before and after a move, which may be that to a preset."""
+    elsewhere = full_match(
+        rf"{_SKIP} {_SEE} {_WAY} (?P<thing>_+?) here (than_at|than_in|(THAN|than) (at|in|on)?) (DET)* (?P<place>PRESET) "
+        r"(PRESETNOUN)?",
+        lexemes,
+    )
+    if elsewhere is not None:
+        counted, places = thing_of(source, trimmed(elsewhere["thing"], "VISIBLE")), places_of(source, elsewhere["place"])
+        if counted is not None and places:
+            return BeforeAfter(counted, (GoToPreset(places[0]),), _comparison(elsewhere["way"]), places[0])
     patterns = (
         (
             rf"{_SKIP} {_SEE} {_WAY} (?P<thing>_+?) (VISIBLE)? (before or AFTER|BEFORE or AFTER|AFTER or BEFORE|AFTER|"
