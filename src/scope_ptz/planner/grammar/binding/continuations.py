@@ -15,6 +15,7 @@ from scope_ptz.planner.grammar.binding.corrections import (
     size_in_answer,
     turns_the_other_way,
 )
+from scope_ptz.planner.grammar.binding.focus import foci_of
 from scope_ptz.planner.grammar.binding.single_moves import SingleMove, single_move, towards
 from scope_ptz.planner.grammar.execution.camera_history import Effect
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme, lexemes_of
@@ -36,7 +37,7 @@ _SAME = re.compile(r"(?:and |now |ok |okay |yes |please )*(?:more|further|keep g
 _NEIGHBOUR = re.compile(
     r"(?:and |now |ok |okay |please )*(?:(?:go|move|switch|jump|on) (?:on )?to |show (?:me )?)?"
     r"(?:the )?(?P<which>next|following|previous)"
-    r" (?:preset|one|position|view|place|stop)(?: please)?[.!?]*",
+    r" (?P<noun>preset|one|position|view|place|stop)(?: please)?[.!?]*",
     re.IGNORECASE,
 )
 _PICTURES = re.compile(
@@ -281,5 +282,7 @@ def _neighbour(said: str, conversation: Sequence[PastTurn], presets: tuple[str, 
     visited = [str(o.call.arguments.get("name")) for o in outcomes if o.call.name == "go_to_preset" and o.error is None]
     if match is None or not visited or visited[-1] not in presets:
         return None
+    if match["noun"] == "one" and foci_of(conversation[-1:]):
+        return None  # "and the next one?" after a close-up of the first board
     step = -1 if match["which"].lower() == "previous" else 1
     return presets[(presets.index(visited[-1]) + step) % len(presets)]
