@@ -70,7 +70,7 @@ def test_it_is_the_thing_that_was_asked_about() -> None:
 
 def test_one_is_the_head_noun_of_the_last_description() -> None:
     calls, _ = last_calls("how many workers are wearing helmets?", "zoom in on the one on the left", looks=(2, True))
-    assert calls == [("zoom_to_object", {"description": "worker on the left"})]
+    assert calls == [("zoom_to_object", {"description": "worker on the left wearing helmets"})]
 
 
 @pytest.mark.parametrize("named", ["platform one", "dock one", "number one bus"])

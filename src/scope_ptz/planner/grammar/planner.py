@@ -13,6 +13,7 @@ from scope_ptz.planner.grammar.binding.small_talk import impossible_request
 from scope_ptz.planner.grammar.binding.understand import Understanding, understand
 from scope_ptz.planner.grammar.consistency.check import NOT_UNDERSTOOD
 from scope_ptz.planner.grammar.execution.camera_history import position_history
+from scope_ptz.planner.grammar.execution.close_ups import view_before_close_ups
 from scope_ptz.planner.grammar.execution.closer_look import offer_in, offer_text
 from scope_ptz.planner.grammar.execution.program import Program
 from scope_ptz.planner.grammar.instruction_tree import Forbid, LookCloser, Thing
@@ -75,6 +76,7 @@ def decide_on(meaning: Understanding, state: State) -> Decision:
         may_go_closer=briefing.simulated,
         viewpoint=viewpoint,
         viewpoints=briefing.viewpoints,
+        wider_view=view_before_close_ups(state.conversation),
     )
     outcomes = [outcome for exchange in state.history for outcome in exchange.outcomes]
     call = _next_call(program, meaning, outcomes)

@@ -24,6 +24,9 @@ _PRONOUNS = frozenset({
 })  # fmt: skip
 """Words that describe no thing of their own."""
 _WHO = re.compile(r"who(?:['’]s| is| are| has| have|se)?\s+|who(?=\w)", re.IGNORECASE)
+_OF_GROUP = re.compile(
+    r"of (?:the|these|those) (?P<noun>[\w-]+(?: [\w-]+)??) (?=(?:is|are|has|have|wears?|carr(?:y|ies)|holds?) )", re.IGNORECASE
+)
 _WHICH = re.compile(
     r"(?:which|what)\s+(?:of\s+(?:the|these|those)\s+)?(?P<noun>.+?)\s+(?P<verb>is|are|has|have|does|do|looks?|wears?|carr(?:y|ies)|holds?)\s+"
     r"(?P<rest>.+)",
@@ -37,6 +40,7 @@ _PLAIN_ARTICLES = frozenset({"the", "any", "some"})
 _VERB_BEFORE = re.compile(r"\b(?:is|are|does|do|has|have) $", re.IGNORECASE)
 _VERBS = {"has": "with", "have": "with", "wear": "wearing", "carry": "carrying", "hold": "holding"}
 _PERSON = frozenset({"anyone", "anybody", "someone", "somebody", "everyone", "everybody"})
+_PART_OF = re.compile(r"(?P<part>[\w -]+) of the (?P<owner>.+)")
 _OWNER = re.compile(r"(.+\w)['’]s? \w")
 _ANYONE = re.compile(r"\b(?:any|some|every)(?:one|body)\b", re.IGNORECASE)
 
@@ -101,7 +105,14 @@ def with_other_thing(question: str, description: str) -> str | None:
     thing = asked_thing(question)
     if thing is None or thing.end <= thing.start:
         return None
-    article = _ARTICLE.match(question[thing.start : thing.end])
+    asked_words = question[thing.start : thing.end]
+    if asked_words.split(" ")[0].lower() in _PERSON and description.startswith("person "):
+        return f"{question[: thing.start]}anyone{description.removeprefix('person')}{question[thing.end :]}"
+    if (owned := _PART_OF.fullmatch(description)) is not None:
+        part = re.match(r"['’]s? [\w-]+", question[thing.end :])
+        if part is not None and owned["owner"].lower() == thing.description.lower():  # "his bike" after "the cyclist's jacket"
+            return f"{question[: thing.end]}'s {owned['part']}{question[thing.end + part.end() :]}"
+    article = _ARTICLE.match(asked_words)
     is_numbered = description.split(" ")[-1].isdigit()  # "dock 3"
     kept = "" if is_numbered else article[0] if article and article[0].lower().strip() in _PLAIN_ARTICLES else "the "
     before = _VERB_BEFORE.search(question[: thing.start])
@@ -125,6 +136,8 @@ def _described(question: tree.Question | None) -> tree.Description | None:
             return what
         case tree.IsA(subject=what):
             return what
+        case tree.Describe(tests=(tree.Relation(other=what),), what=None):
+            return what  # "what is to the left of the road roller?"
         case (
             tree.Exists(what=what) | tree.Count(what=what) | tree.Ask(what=what) | tree.Read(what=what) | tree.Price(what=what)
             | tree.Time(what=what) | tree.Where(what=what) | tree.Quarter(what=what) | tree.What(what=what)
@@ -154,17 +167,31 @@ def _asked(text: str, asked: tree.Question | None, start: int, end: int) -> Aske
     if isinstance(asked, tree.YesNo):
         with_rest = without_predicate(text[start:])
         is_marked = text[end:].startswith(" with ") and len(with_rest) < len(text) - start  # "is the man with an umbrella walking?"
-        description = with_rest if is_marked else without_predicate(noun_phrase)
+        marked = with_rest if is_marked else _with_first_test(text[start:], asked.tests)
+        description = marked or without_predicate(noun_phrase)
         if not description:
             return None
         end = start + len(description)
         if first in _PERSON:
-            description = text[start:]
+            description, end = text[start:], len(text)
     article = next((match for match in _ARTICLE.finditer(text) if match.end() == start), None)
     start = article.start() if article else start
     if (owner := _OWNER.match(description)) is not None:
         return AskedThing(owner[1], start, end - len(description) + len(owner[1]))  # "what colour is the worker's helmet?"
     return AskedThing(_ANYONE.sub("person", description), start, end)
+
+
+def _with_first_test(text: str, tests: Sequence[tree.Test]) -> str:
+    """Return the subject of a question with what marks it: "man in the red helmet" of "man in the red helmet on the phone".
+
+    Of several predicates, only the last one is asked about. Empty if there is only one.
+    """
+    if len(tests) < 2:
+        return ""
+    last = tests[-1]
+    predicates = rf" {re.escape(last.preposition)} " if isinstance(last, tree.Relation) and last.preposition else r" \w+ing "
+    begins = [match.start() for match in re.finditer(predicates, f"{text} ")]
+    return text[: begins[-1]] if begins else ""
 
 
 def _with_predicate(text: str, tests: Sequence[tree.Test]) -> AskedThing | None:
@@ -173,6 +200,8 @@ def _with_predicate(text: str, tests: Sequence[tree.Test]) -> AskedThing | None:
     if (who := _WHO.match(text)) is not None:
         verb, rest = who[0].split()[-1].lower() if " " in who[0].strip() else "", text[who.end() :]
         noun, start = "person", who.start()
+        if (group := _OF_GROUP.match(rest)) is not None:  # "who of the workers wears a white helmet?"
+            noun, rest = singular(group["noun"].lower()), re.sub(r"^(?:is|are) ", "", rest[group.end() :])
         is_has = who[0].split()[-1].lower() in {"has", "have"}
         if rest.split(" ")[0].lower() in _PRONOUNS or (_ARTICLE.match(rest) and not is_has):
             return None  # "who's there?", "who is the man on the left?"

@@ -18,6 +18,7 @@ from scope_ptz.planner.grammar.binding.corrections import (
     thing_beside_rejected,
     turns_the_other_way,
 )
+from scope_ptz.planner.grammar.binding.focus import foci_of
 from scope_ptz.planner.grammar.binding.further_moves import measured_by_last, more, same_axis_again, share_of_zoom
 from scope_ptz.planner.grammar.binding.overshoots import move_after_overshoot
 from scope_ptz.planner.grammar.binding.repeated_returns import continued_return
@@ -36,7 +37,7 @@ _MAX_TURNS = 30  # maximum number of earlier turns that are considered
 _NEIGHBOUR = re.compile(
     r"(?:and |now |ok |okay |please )*(?:(?:go|move|switch|jump|on) (?:on )?to |show (?:me )?)?"
     r"(?:the )?(?P<which>next|following|previous)"
-    r" (?:preset|one|position|view|place|stop)(?: please)?[.!?]*",
+    r" (?P<noun>preset|one|position|view|place|stop)(?: please)?[.!?]*",
     re.IGNORECASE,
 )
 _PICTURES = re.compile(
@@ -223,5 +224,7 @@ def _neighbour(said: str, conversation: Sequence[PastTurn], presets: tuple[str, 
     visited = [str(o.call.arguments.get("name")) for o in outcomes if o.call.name == "go_to_preset" and o.error is None]
     if match is None or not visited or visited[-1] not in presets:
         return None
+    if match["noun"] == "one" and foci_of(conversation[-1:]):
+        return None  # "and the next one?" after a close-up of the first board
     step = -1 if match["which"].lower() == "previous" else 1
     return presets[(presets.index(visited[-1]) + step) % len(presets)]

@@ -74,6 +74,18 @@ def counts_of_tour(counts: Sequence[EarlierCount]) -> list[EarlierCount]:
     return tour if is_known else []
 
 
+def counts_to_add(counts: Sequence[EarlierCount]) -> list[EarlierCount]:
+    """Return the counts of the same objects at several presets that "altogether" adds; nothing if there are none."""
+    if not counts:
+        return []
+    if tour := counts_of_tour(counts):
+        return tour
+    two = last_two_presets(counts)
+    latest = {count.preset: count for count in counts if count.description == counts[-1].description}
+    added = [latest[preset] for preset in two] if two is not None else []
+    return added if all(count.complete for count in added) else []
+
+
 def last_two_presets(counts: Sequence[EarlierCount]) -> tuple[str, str] | None:
     """Return the two presets at which the same objects were counted last, the earlier one first; None if there are no two."""
     for earlier in reversed(counts[:-1]):

@@ -7,8 +7,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
 
+from scope_ptz.english.grammar.questions import question_tree as tree
+from scope_ptz.english.grammar.questions.question_parser import parse_question
 from scope_ptz.english.grammar.questions.recognition import looks_like_description
+from scope_ptz.planner.grammar.binding.answered_things import single_thing, stated_number, two_members
 from scope_ptz.planner.grammar.binding.asked_things import asked_thing, two_things
+from scope_ptz.planner.grammar.binding.narrowing import are_exclusive
 from scope_ptz.planner.grammar.binding.noun_heads import (
     head_noun,
     may_name_person,
@@ -16,6 +20,7 @@ from scope_ptz.planner.grammar.binding.noun_heads import (
     names_person,
     names_several,
     noun_end,
+    without_number,
 )
 from scope_ptz.planner.grammar.execution.answer_sentences import noun
 
@@ -29,10 +34,6 @@ _SHARE = re.compile(
     re.IGNORECASE,
 )
 """Wordings that narrow what the turn before was about."""
-
-_EXIST = re.compile(r"(?:yes, )?there are (\d+) ", re.IGNORECASE)
-_LISTED = re.compile(r"((?:An?|\d+) .+) are ")
-"""An answer that lists the things: "A child, a man with a hat and 2 women are waiting."."""
 
 PERSONAL = frozenset({"he", "him", "his", "she", "her", "hers", "himself", "herself"})
 """Pronouns for one person, or for an animal."""
@@ -58,6 +59,7 @@ class Focus:
         question: The question that was asked; empty for other looks.
         whole: The things of which these are a share: "workers" after "how many of them wear helmets?"; empty if they are no share.
         is_chosen: Whether the camera chose the thing among several that matched, to which "they" still refers.
+        members: The descriptions of two things that the answer listed; empty if it did not.
     """
 
     description: str
@@ -66,6 +68,7 @@ class Focus:
     question: str = ""
     whole: str = ""
     is_chosen: bool = False
+    members: tuple[str, ...] = ()
 
     @property
     def is_several(self) -> bool:
@@ -114,6 +117,16 @@ def latest_counts(conversation: Sequence[PastTurn]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(counted))
 
 
+def things_to_add(conversation: Sequence[PastTurn]) -> tuple[str, ...]:
+    """Return the things that the latest turns counted and of which none was counted twice, so that they can be added."""
+    added: list[str] = []
+    for description in reversed(latest_counts(conversation)):
+        if not all(are_exclusive(description, other) for other in added):
+            break
+        added.insert(0, description)
+    return tuple(added)
+
+
 def _shared(before: Focus, focus: Focus) -> str:
     """Return the things of which a look considered a share, if they are of the same kind as what it found; otherwise nothing."""
     whole = before.whole or before.description
@@ -138,30 +151,22 @@ def _foci_of_look(outcome: ToolOutcome) -> list[Focus]:
         case "track_object":
             return [Focus(description, None, "track_object")]
         case "query_answer":
-            question = str(arguments.get("question", ""))
-            if (thing := asked_thing(question)) is None:
-                return []
-            number = _stated_number(str(result.get("answer", "")), thing.description)
-            return [Focus(thing.description, number, "query_answer", question)]
+            return _foci_of_answer(str(arguments.get("question", "")), str(result.get("answer", "")))
         case _:
             return []
 
 
-def _stated_number(answer: str, description: str) -> int | None:
-    """Return how many things an answer names: "There are 2 forklifts: ..." or "A child and 2 men are waiting."; None if unclear."""
-    if answer.lower().startswith("no"):
-        return None  # "No, none of the 3 people is walking."
-    if (exist := _EXIST.match(answer)) is not None:
-        return int(exist[1])
-    several = head_noun(noun(description, 2)).lower()
-    if several == "persons":
-        several = "people"
-    stated = re.search(rf"\b(\d+) (?:[\w'’-]+ ){{0,3}}?{re.escape(several)}\b", answer, re.IGNORECASE)
-    if stated is not None:
-        return int(stated[1])
-    if (listed := _LISTED.match(answer)) is None:
-        return None
-    return sum(int(match[1]) if (match := re.match(r"(\d+) ", item)) else 1 for item in re.split(r", | and (?=an? |\d)", listed[1]))
+def _foci_of_answer(question: str, answer: str) -> list[Focus]:
+    thing = asked_thing(question)
+    if thing is None:  # "is there a dog or a fox?"
+        single = single_thing(answer) if len(two_things(question)) > 1 else ""
+        return [Focus(single, 1, "query_answer", question)] if single else []
+    description, number = without_number(thing.description)
+    is_about_others = isinstance(parse_question(question), tree.Describe)  # "what is to the left of the van?"
+    stated = None if is_about_others else stated_number(answer, description)
+    number = number if stated is None else stated
+    members = two_members(answer, description) if number == 2 else ()
+    return [Focus(description, number, "query_answer", question, members=members)]
 
 
 def referent(foci: Sequence[Focus], pronoun: str) -> Focus | None:
@@ -171,20 +176,31 @@ def referent(foci: Sequence[Focus], pronoun: str) -> Focus | None:
 
     Args:
         foci: What the conversation was about, oldest first.
-        pronoun: The pronoun, in lower case.
+        pronoun: The pronoun, in lower case; empty for a thing that is left out, as in "how many?".
     """
     latest = foci[-1] if foci else None
+    if not pronoun:
+        return latest
     if pronoun == OF_THEM:
-        groups = (focus for focus in reversed(foci) if focus.is_several or focus.whole or focus.look == "count_objects")
+        groups = (f for f in reversed(foci) if f.is_several or f.whole or f.look == "count_objects" or _is_anyone(f))
         return next(groups, latest)
     if pronoun in PERSONAL:
         people = (focus for focus in reversed(foci) if names_person(focus.description) or names_animal(focus.description))
         return latest if latest is not None and may_name_person(latest.description) else next(people, None)
     if pronoun in PLURAL:
-        several = (f for f in reversed(foci) if not f.is_chosen and (f.is_several or names_person(f.description)))
+        several = (
+            f
+            for f in reversed(foci)
+            if not f.is_chosen and (f.is_several or names_several(f.description) or names_person(f.description))
+        )
         return next(several, latest)
     things = (focus for focus in reversed(foci[-_RECENT:]) if not names_person(focus.description))
     return next(things, latest)
+
+
+def _is_anyone(focus: Focus) -> bool:
+    """Return whether a question asked whether there are people, whose number its answer need not say: "is anyone waiting?"."""
+    return names_person(focus.description) and isinstance(parse_question(focus.question), tree.Exists)
 
 
 WHICH_ONE = "Which of the "
@@ -194,10 +210,10 @@ WHICH_ONE = "Which of the "
 def which_one(focus: Focus) -> str:
     """Return the question about a pronoun in the singular that may refer to several things."""
     number = f"{focus.number} " if focus.number else ""
-    return f"{WHICH_ONE}{number}{_several(focus.description)} do you mean?"
+    return f"{WHICH_ONE}{number}{in_plural(focus.description)} do you mean?"
 
 
-def _several(description: str) -> str:
+def in_plural(description: str) -> str:
     """Return a description in the plural: "men pointing" for "man pointing", whose participle is not the noun."""
     end = noun_end(description)
     return noun(description[:end], 2) + description[end:] if end else noun(description, 2)

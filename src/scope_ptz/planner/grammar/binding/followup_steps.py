@@ -9,11 +9,12 @@ from dataclasses import dataclass, replace
 
 from scope_ptz.planner.grammar import instruction_tree as ast
 from scope_ptz.planner.grammar.binding.asked_things import with_other_thing
-from scope_ptz.planner.grammar.binding.focus import PLURAL, foci_of, like_to_know, which_one
-from scope_ptz.planner.grammar.binding.followups import is_adjective
+from scope_ptz.planner.grammar.binding.focus import PLURAL, foci_of, latest_counts, like_to_know, which_one
+from scope_ptz.planner.grammar.binding.followups import is_adjective, is_other
 from scope_ptz.planner.grammar.binding.names import Names, UnresolvedError
 from scope_ptz.planner.grammar.binding.narrowing import is_region, narrowed, with_region_noun
-from scope_ptz.planner.grammar.binding.noun_heads import head_noun, names_person, names_several
+from scope_ptz.planner.grammar.binding.noun_heads import has_one, head_noun, is_same_kind, names_person, names_several
+from scope_ptz.planner.grammar.binding.pairs import members_of
 from scope_ptz.planner.grammar.binding.pending_questions import pending_step, with_thing
 from scope_ptz.planner.grammar.binding.preset_matching import match_preset
 from scope_ptz.planner.grammar.execution.answer_sentences import noun
@@ -33,17 +34,34 @@ class FollowUpSteps(Names):
     def _count(self, step: ast.Count) -> Sequence[ast.Step]:
         """Return a count with its names resolved."""
 
-    def _only_one(self) -> str:
-        """Return the description of the thing that was named last, of which there is a single one.
+    def _zooms_on_group(self, pronoun: str) -> Sequence[ast.Step]:
+        """Return the close-ups of "zoom in on one of them", for which any will do, and of "both", one after the other.
 
         Raises:
-            UnresolvedError: There are several, of which the camera can show only one.
+            UnresolvedError: There are several, and not exactly two, of which the camera can show only one.
         """
         last = self.foci[-1] if self.foci else None
-        if last is None or self.antecedent or last.is_several:
-            raise UnresolvedError(which_one(last) if last is not None else f"Which {noun(self.topic, 1)} do you mean?")
-        self.antecedent = last.one
-        return last.one
+        if last is None or self.antecedent:
+            raise UnresolvedError(f"Which {noun(self.topic, 1)} do you mean?")
+        if pronoun == "both" and (index := self._pair_with(last.description)) is not None:
+            one, other = (ast.Thing(thing, definite=True) for thing in members_of(self.foci[index]))
+            self.antecedent = other.text
+            return [*self._to_group_view(), ast.ZoomTo(one), ast.WiderView(), ast.ZoomTo(other)]
+        group = next((f for f in reversed(self.foci) if f.is_several and is_same_kind(f.description, last.description)), None)
+        if pronoun == "both" and group is not None:
+            raise UnresolvedError(which_one(group))
+        self.antecedent = noun(last.description, 1) if last.is_several else last.one
+        return [ast.ZoomTo(ast.Thing(self.antecedent, definite=True))]
+
+    def _to_group_view(self) -> Sequence[ast.Step]:
+        """Return the step that returns from a close-up to the view in which several things were seen, if one of them is meant.
+
+        After a close-up, "the other one" is outside the picture. Things that were seen in the close-up itself are still there.
+        """
+        close_ups = [i for i, focus in enumerate(self.foci) if focus.look in {"zoom_to_object", "track_object"}]
+        if self.antecedent or not close_ups or any(focus.is_several for focus in self.foci[close_ups[-1] + 1 :]):
+            return []
+        return [ast.WiderView()]
 
     def _whatabout(self, step: ast.WhatAbout) -> Sequence[ast.Step]:
         if step.thing.text and self.presets and (name := match_preset(step.thing.text, self.presets)):
@@ -53,7 +71,11 @@ class FollowUpSteps(Names):
             step = ast.WhatAbout(ast.Thing(predicate=step.thing.text))
         if step.thing.predicate and (counted := self._count_before_moves(step.thing.predicate)):
             return self._count(ast.Count((ast.Thing(narrowed(counted, step.thing.predicate)),)))
-        thing = self.thing(self._with_noun_if_bare(step.thing))
+        if step.thing.predicate and not pending and len(counted_together := self._counted_together()) > 1:
+            return self._count(ast.Count(tuple(ast.Thing(narrowed(each, step.thing.predicate)) for each in counted_together)))
+        described = self._with_noun_if_bare(step.thing)
+        widening = self._to_group_view() if has_one(described.text) or is_other(described.text) else []
+        thing = self.thing(described)
         if not self.conversation:
             return self._count(ast.Count((thing,)))
         if isinstance(pending, ast.ZoomTo) and step.thing.pronoun in PLURAL:
@@ -64,7 +86,13 @@ class FollowUpSteps(Names):
             raise UnresolvedError(like_to_know(thing.text))  # a count says nothing about one thing
         if step.thing.pronoun == "both" and self.foci and self.foci[-1].look in {"count_objects", "query_answer"}:
             raise UnresolvedError(f"What shall I do with the {thing.text}?")
-        return [self._last_look_at(thing, topic)]
+        return [*widening, self._last_look_at(thing, topic)]
+
+    def _counted_together(self) -> tuple[str, ...]:
+        """Return the things of several kinds that the last turn counted: cars and vans; nothing if it did anything else."""
+        counted = latest_counts(self.conversation[-1:])
+        kinds = {noun(head_noun(each), 1) for each in counted}
+        return counted if len(kinds) == len(counted) > 1 else ()
 
     def _with_noun_if_bare(self, thing: ast.Thing) -> ast.Thing:
         """Add the last noun to an adjective: "and the farthest?" after "which car is nearest?" means the farthest car."""

@@ -11,6 +11,7 @@ from scope_ptz.english.grammar.parts_of_speech import parts_of_speech
 from scope_ptz.english.grammar.questions.recognition import is_description
 from scope_ptz.planner.grammar import instruction_tree as ast
 from scope_ptz.planner.grammar.binding.narrowing import names_region
+from scope_ptz.planner.grammar.binding.noun_heads import has_one, is_ranked
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme, lexemes_of
 from scope_ptz.planner.grammar.parsing.instruction_parser import parse
 from scope_ptz.planner.grammar.parsing.parts.clause import Source, text_of, trimmed
@@ -21,6 +22,7 @@ _REJECTING = "(FILLER|COMMA)* (no|nope|nah) ((COMMA|DASH)+|(?=the))"
 """The beginning of a follow-up that corrects the turn before: "no, the woman on the left"."""
 
 _END = "(FILLER|COMMA|QUESTION|STOP|NOW|then|VISIBLE)*"
+_SHOW = "((ZOOM IN|ZOOM_IN) (on|onto|to)|show (me|us)?|SHOW (me|us)?|look at|LOOK_AT)"
 _DETERMINER = "(DET|EVERY)"
 _PREPOSITIONS = frozenset({
     "in", "on", "at", "near", "behind", "beside", "under", "above", "below", "between", "inside", "outside", "with", "without",
@@ -48,9 +50,7 @@ def _followup(source: Source, lexemes: Sequence[Lexeme]) -> ast.Step | None:
         return ast.Ask("where are they?")
     if full_match(f"{_LEAD} READ (them|those|these|both|all) (of|all|both|them|those|these|out|aloud)* {_END}", lexemes):
         return ast.Read(ast.Thing(pronoun="them"))
-    if (
-        chosen := full_match(f"{_LEAD} (ZOOM IN|ZOOM_IN) (on|onto|to) (?P<which>one|both|all|each) (of)? (PRON)? {_END}", lexemes)
-    ) is not None:
+    if (chosen := full_match(f"{_LEAD} {_SHOW} (?P<which>one|both|all|each) (of)? (PRON|DET two)? {_END}", lexemes)) is not None:
         return ast.ZoomTo(ast.Thing(pronoun="one" if chosen["which"][0].word == "one" else "both"))
     if search("one of (them|those|these)", lexemes):
         return ast.Unclear("Which one do you mean? Please describe it.")
@@ -73,13 +73,15 @@ def _followup(source: Source, lexemes: Sequence[Lexeme]) -> ast.Step | None:
     phrase = full_match(f"{_DETERMINER} (?P<noun>_+)", what)
     if phrase is not None:
         noun_phrase = text_of(source, phrase["noun"])
-        has_one = any(x.word in {"one", "ones"} for x in phrase["noun"])
+        is_one = any(x.word in {"one", "ones"} for x in phrase["noun"])
         if is_other(noun_phrase):
             return ast.WhatAbout(ast.Thing(noun_phrase, definite=True))
         if is_led and names_region(noun_phrase):
             return ast.WhatAbout(ast.Thing(predicate=f"in the {noun_phrase}"))
-        return ast.WhatAbout(ast.Thing(noun_phrase, definite=True)) if has_one or (is_led and is_description(noun_phrase)) else None
+        return ast.WhatAbout(ast.Thing(noun_phrase, definite=True)) if is_one or (is_led and is_description(noun_phrase)) else None
     predicate = text_of(source, what)
+    if is_ranked(predicate) and is_description(predicate) and not has_one(predicate) and source.text.rstrip().endswith("?"):
+        return ast.Ask(f"what is the {predicate}?")
     return ast.WhatAbout(ast.Thing(predicate=predicate)) if is_led and is_predicate(predicate) else None
 
 
@@ -90,7 +92,7 @@ def question_about_topic(text: str, presets: tuple[str, ...]) -> tuple[ast.Step,
         return None
     lead = "(FILLER|COMMA|AND|BUT|now|so)* (what_about|how_about)"
     match = full_match(f"{lead} DET (?P<noun>_+?) (COMMA|DASH|QUESTION)+ (AND)? (?P<asked>_+)", lexemes)
-    if match is None or not any(x.has("PRON") for x in match["asked"]) or any(x.has("COMMA") for x in match["noun"]):
+    if match is None or not any(x.has("PRON", "HOWMANY") for x in match["asked"]) or any(x.has("COMMA") for x in match["noun"]):
         return None
     source = Source(text, presets)
     asked = parse(f"{text_of(source, match['asked'])}?", presets).steps or ()

@@ -8,10 +8,24 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from scope_ptz.english.grammar.lexicon import lexicon
+from scope_ptz.english.grammar.questions import question_tree as tree
+from scope_ptz.english.grammar.questions.question_parser import parse_question
 from scope_ptz.planner.grammar import instruction_tree as ast
 from scope_ptz.planner.grammar.binding.earlier_comparison import EarlierCount, counts_at_presets, last_preset
-from scope_ptz.planner.grammar.binding.focus import OF_THEM, PERSONAL, PLURAL, Focus, foci_of, referent, things_named, which_one
-from scope_ptz.planner.grammar.binding.narrowing import is_worn, narrowed, with_noun, with_region_noun
+from scope_ptz.planner.grammar.binding.focus import (
+    OF_THEM,
+    PERSONAL,
+    PLURAL,
+    WHICH_ONE,
+    Focus,
+    foci_of,
+    in_plural,
+    referent,
+    things_named,
+    which_one,
+)
+from scope_ptz.planner.grammar.binding.followups import is_adjective
+from scope_ptz.planner.grammar.binding.narrowing import is_region, is_worn, narrowed, with_noun, with_region_noun
 from scope_ptz.planner.grammar.binding.noun_heads import (
     bare_noun,
     has_one,
@@ -21,6 +35,7 @@ from scope_ptz.planner.grammar.binding.noun_heads import (
     names_several,
     with_ones_replaced,
 )
+from scope_ptz.planner.grammar.binding.pairs import members_of, names_neighbour, neighbour_of, other_of, pair_in, taken_of
 from scope_ptz.planner.grammar.binding.preset_matching import match_preset, plausible_name
 from scope_ptz.planner.grammar.execution.answer_sentences import noun
 
@@ -89,7 +104,7 @@ class Names:
         if found is None:
             raise UnresolvedError(f"Who do you mean by '{pronoun}'? Please name the person.")
         if pronoun == OF_THEM:
-            return found.whole or found.description
+            return found.whole or (in_plural(found.description) if names_person(found.description) else found.description)
         if not pronoun or pronoun in PLURAL:
             return found.description
         if found.is_several:
@@ -127,13 +142,19 @@ class Names:
         if (other := _OTHER.fullmatch(thing.text)) is not None and thing.definite and self.foci:
             self.antecedent = self._other(other["noun"] or "")
             return ast.Thing(self.antecedent, definite=True)
+        if self.foci and not self.antecedent and (neighbour := neighbour_of(thing.text, self.foci[-1].one)):
+            self.antecedent = neighbour
+            return ast.Thing(neighbour, definite=True)
+        if names_neighbour(thing.text) and self.topic:
+            raise UnresolvedError(f"Which {noun(bare_noun(self.topic), 1)} do you mean? Please describe it.")
+        if self.antecedent and not thing.definite and is_adjective(thing.text.lower()):
+            self.antecedent = narrowed(self.antecedent, thing.text)  # "how many barrels are blue and how many red?"
+            return replace(thing, text=self.antecedent)
         if thing.text:
             text = self._with_owner(replace(thing, text=self._with_object(self._with_noun(thing.text))))
             self.antecedent = text
             return replace(thing, text=text)
-        if not (
-            description := self.referent(OF_THEM if thing.predicate and thing.pronoun not in {"those", "these"} else thing.pronoun)
-        ):
+        if not (description := self._narrowed_group(thing)):
             if thing.pronoun in PERSONAL:
                 raise UnresolvedError(f"Who do you mean by '{thing.pronoun}'? Please name the person.")
             word = thing.pronoun if thing.pronoun and self.conversation else "it"
@@ -141,6 +162,23 @@ class Names:
         predicate = with_region_noun(thing.predicate, description)
         self.antecedent = narrowed(description, predicate) if predicate else description
         return ast.Thing(self.antecedent, definite=True)
+
+    def _narrowed_group(self, thing: ast.Thing) -> str:
+        """Return the description of the things that a pronoun or a predicate is about.
+
+        "How many are sitting?" is about all the people, although those with helmets were counted last. "In the left half" is a
+        part of the picture, so it is about what was counted last.
+        """
+        if not thing.predicate or thing.pronoun in {"those", "these"}:
+            return self.referent(thing.pronoun)
+        last = self.foci[-1] if self.foci else None
+        if not self.antecedent and not thing.pronoun and last is not None and last.look == "query_answer":
+            return last.description  # "and on the right?" after a question about a sign
+        described = self.referent(OF_THEM)
+        if self.antecedent or not self.foci or not is_region(thing.predicate):
+            return described
+        found = referent(self.foci, OF_THEM)
+        return found.description if found is not None else described
 
     def _other(self, named: str) -> str:
         """Return the description of "the other one": of two things that were named, the one that is not looked at now.
@@ -159,15 +197,48 @@ class Names:
         if is_kind and len(others) == 1 and current.lower() in things:
             return others[0]
         is_several = named in {"", "ones"} or names_several(named)
+        if is_several and not self.antecedent and isinstance(parse_question(self.foci[-1].question), tree.Read):
+            return noun(bare_noun(current), 2)  # the other signs are read with all of them
+        if not is_several and (other := self._other_of_two(current, "" if named == "one" else named)):
+            return other
         which = f"Which other {noun(bare_noun(current) if named in {'', 'one', 'ones'} else named, 2 if is_several else 1)}"
         raise UnresolvedError(f"{which} do you mean? Please describe {'them' if is_several else 'it'}.")
+
+    def _other_of_two(self, current: str, kind: str) -> str:
+        """Return the other one of two things that were counted or listed; empty if there are no two.
+
+        Args:
+            current: What is spoken of now.
+            kind: The noun after "other"; empty for "the other one".
+
+        Raises:
+            UnresolvedError: It is not clear which of the two is meant.
+        """
+        index = self._pair_with(current, kind)
+        if index is None:
+            return ""
+        pair = self.foci[index]
+        taken = taken_of(self.foci, index, self.antecedent)
+        if taken and (other := other_of(pair, taken)):
+            return other
+        one, other = members_of(pair)
+        raise UnresolvedError(f"{WHICH_ONE}2 do you mean: the {one} or the {other}?")
+
+    def _pair_with(self, current: str, kind: str = "") -> int | None:
+        """Return the index of the two things to which what is spoken of now belongs; None if it belongs to no two."""
+        latest = pair_in(self.foci)
+        if not kind and latest is not None and (current in self.foci[latest].members or latest == len(self.foci) - 1):
+            return latest
+        return pair_in(self.foci, kind or current)
 
     def _with_noun(self, text: str) -> str:
         """Replace "one" with the last noun: after cars, "the nearest one" means the nearest car."""
         if not has_one(text):
             return text
         if not self.antecedent:
-            return with_noun(text, self._ones(text))
+            one = self._ones(text)
+            is_group = any(focus.description == one and focus.is_several for focus in self.foci[-2:])
+            return with_noun(text, one, is_group=is_group)
         antecedent = self.antecedent
         prepositions = r" (?:on|in|at|by|with|without|near|behind) "
         parts = re.split(rf"{prepositions}| (?:not )?\w+ing ", antecedent)
@@ -178,8 +249,9 @@ class Names:
     def _ones(self, text: str) -> str:
         """Return the earlier description to which "one" refers: of a person for "the one with the blue helmet"."""
         wears = is_worn(text)
-        people = (focus.description for focus in reversed(self.foci) if names_person(focus.description))
-        return next(people, self.topic) if wears else self.topic
+        meant = [focus for focus in self.foci if not focus.is_chosen]  # "the left one" is one of those among which the camera chose
+        people = (focus.description for focus in reversed(meant) if names_person(focus.description))
+        return next(people, self.topic) if wears else meant[-1].description if meant else self.topic
 
     def _with_object(self, text: str) -> str:
         """Replace a pronoun after a preposition by an earlier thing: "man next to it" becomes "man next to the van"."""

@@ -9,7 +9,7 @@ from scope_ptz.english.grammar.lexicon import lexicon, nouns_in
 from scope_ptz.english.grammar.parts_of_speech import parts_of_speech
 from scope_ptz.english.grammar.questions import question_tree as tree
 from scope_ptz.english.grammar.questions.question_parser import parse_description
-from scope_ptz.planner.grammar.binding.noun_heads import bare_noun, with_ones_replaced
+from scope_ptz.planner.grammar.binding.noun_heads import bare_noun, is_ranked, with_ones_replaced
 from scope_ptz.planner.grammar.execution.answer_sentences import head_and_rest, noun
 
 _BOUNDARY = re.compile(
@@ -25,9 +25,16 @@ _REGION_NOUN = re.compile(r"\b(?P<noun>half|quarter|third|corner|side|part|secti
 _REGION_WITHOUT_NOUN = re.compile(
     r"(?:in the )?(?P<sides>(?:top|bottom|upper|lower|middle|centre|left|right)(?:[ -](?:left|right))?)(?: one)?", re.IGNORECASE
 )
+_SIDES = frozenset({"left", "right", "left-hand", "right-hand", "top", "bottom", "middle", "upper", "lower"})
+_ONE_AT = re.compile(r"ones? (?P<place>(?:in|on|at|to) .+)", re.IGNORECASE)
 _WEARING = re.compile(r"\b(?:with|without|wearing|in) (?:the |an? )?(.+)$", re.IGNORECASE)
 _ITEM = re.compile(r"\b(?:wearing|with|without|carrying|holding) (?:an? |the )?((?:\w+ ){0,2}\w+)$", re.IGNORECASE)
 _CLOTHES = frozenset({"hat", "jacket", "vest", "clothes", "hard hat", "trousers", "dress", "skirt", "scarf", "shoes"})
+_EXCLUSIVE_STATES = (
+    frozenset({"open", "closed", "shut"}), frozenset({"lit", "unlit"}), frozenset({"empty", "full", "loaded"}),
+    frozenset({"raised", "lowered"}), frozenset({"moving", "stationary", "parked"}),
+)  # fmt: skip
+_OPPOSITE_SIDES = (({"left"}, {"right"}), ({"top", "upper"}, {"bottom", "lower"}))
 _POSTURES = frozenset(
     {"sitting", "standing", "walking", "kneeling", "lying", "running", "crouching", "cycling", "parked", "moving"}
 )
@@ -48,16 +55,65 @@ def narrowed(description: str, predicate: str) -> str:
     What the predicate contradicts is replaced: of "people in the left half", "in the right half" leaves "people in the right half".
     """
     modifier = as_modifier(predicate)
+    if modifier.lower() in COLOURS and (recoloured := _recoloured(description, modifier)):
+        return recoloured
     head, rest = head_and_rest(description)
     kind = _kind(modifier)
     parts = [part for part in _BOUNDARY.split(rest.strip()) if part and _kind(part) != kind] if rest else []
     words = head.split(" ")
     if modifier.lower() in COLOURS or _is_adjective(modifier):
-        front = [word for word in words[:-1] if not (word.lower() in COLOURS and modifier.lower() in COLOURS)]
+        front = [word for word in words[:-1] if not _excludes(word.lower(), modifier.lower())]
         return " ".join([modifier, *front, words[-1], *parts])
     if kind == "posture":
         words = [word for word in words if word.lower() not in _POSTURES] or words
+    if kind == "place":
+        return " ".join([*words, modifier, *parts])  # "wearing helmets in the left half" would be a place of the helmets
     return " ".join([*words, *parts, modifier])
+
+
+def _excludes(one: str, other: str) -> bool:
+    """Return whether nothing can be described by both of two adjectives: two colours, or "open" and "closed"."""
+    return {one, other} <= COLOURS or any({one, other} <= states for states in _EXCLUSIVE_STATES)
+
+
+def are_exclusive(one: str, other: str) -> bool:
+    """Return whether nothing can fit both of two descriptions, so that their counts can be added.
+
+    These are things of different kinds, none of which contains the other, and things of one kind in opposite parts of the picture,
+    of different colours or in opposite states.
+    """
+    (head, rest), (other_head, other_rest) = head_and_rest(one.lower()), head_and_rest(other.lower())
+    kinds, other_kinds = _concepts(head), _concepts(other_head)
+    if kinds and other_kinds and not kinds & other_kinds:
+        return not any(kind & _concepts_above(names) for kind, names in ((kinds, other_kinds), (other_kinds, kinds)))
+    words, other_words = head.split(" ")[:-1], other_head.split(" ")[:-1]
+    if any(_excludes(a, b) for a in words for b in other_words if a != b):
+        return True
+    sides = {*rest.split(" ")} if is_region(rest) else set()
+    other_sides = {*other_rest.split(" ")} if is_region(other_rest) else set()
+    return any((sides & a and other_sides & b) or (sides & b and other_sides & a) for a, b in _OPPOSITE_SIDES)
+
+
+def _concepts(head: str) -> frozenset[str]:
+    """Return the concept of a head noun; nothing for an unknown one."""
+    concept = lexicon().concept(bare_noun(head))
+    return frozenset() if concept is None else frozenset({concept})
+
+
+def _concepts_above(concepts: frozenset[str]) -> frozenset[str]:
+    return frozenset().union(*(lexicon().kinds(concept) for concept in concepts))
+
+
+def _recoloured(description: str, colour: str) -> str:
+    """Return a description with another colour for what the things have or are at; empty if it names no such colour.
+
+    After "people with red jackets" and "sign on the green cabin", another colour is that of the jackets and of the cabin.
+    """
+    head, rest = head_and_rest(description)
+    colours = [word for word in rest.split(" ") if word.lower() in COLOURS]
+    if len(colours) != 1 or any(word.lower() in COLOURS for word in head.split(" ")):
+        return ""
+    return head + " ".join(colour if word == colours[0] else word for word in rest.split(" "))
 
 
 def names_region(noun_phrase: str) -> bool:
@@ -102,10 +158,30 @@ def last_item(description: str) -> str:
     return noun(matches[-1][1], 1) if matches else ""
 
 
-def with_noun(phrase: str, description: str) -> str:
-    """Replace "one" by the noun of a description: "nearest one" becomes "nearest taxi" after "how many black taxis are there?"."""
+def with_noun(phrase: str, description: str, *, is_group: bool = False) -> str:
+    """Replace "one" by the noun of a description: "blue one" becomes "blue taxi" after "how many black taxis are there?".
+
+    Args:
+        phrase: The phrase.
+        description: The description.
+        is_group: Whether it describes several things that were named together. "The nearest one" is then one of these, so that it
+            stays "the nearest black taxi".
+    """
+    colour, _, one = phrase.rpartition(" ")
+    if one in {"one", "ones"} and colour.lower() in COLOURS and (recoloured := _recoloured(description, colour)):
+        return noun(recoloured, 2 if one == "ones" else 1)
+    number, ones = (2, "ones") if one == "ones" else (1, "one")
+    if is_group and (one == ones and _tells_apart(colour)):
+        return f"{colour} {noun(description, number)}"
+    if is_group and (place := _ONE_AT.fullmatch(phrase)) is not None and is_region(place["place"]):
+        return narrowed(noun(description, number), place["place"])
     head = bare_noun(description)
     return with_ones_replaced(phrase, lambda one: noun(head, 2 if one == "ones" else 1)) if head else phrase
+
+
+def _tells_apart(words: str) -> bool:
+    """Return whether words before "one" only say which of several things is meant: "leftmost", "nearest", "second"."""
+    return is_ranked(f"{words} thing") or words.lower() in _SIDES
 
 
 def is_worn(phrase: str) -> bool:

@@ -46,6 +46,8 @@ _ITEM_ONE = re.compile(
 )
 """Wordings in which "one" is something that people wear or carry."""
 
+_OTHER_ONE = re.compile(r"\bthe other one\b", re.IGNORECASE)
+
 _PROPERTY = frozenset(
     {"colour", "color", "name", "number", "plate", "registration", "sign", "text", "price", "make", "type", "state", "height"}
 )
@@ -81,6 +83,19 @@ def with_noun_for_one(question: str, referent: Referent) -> str:
     is_whole = match["before"].lower() in {"which", "each", "every", "any"} and not is_ranked(words)
     named = noun(words if is_whole else bare_noun(words), 2 if match["one"].lower() == "ones" else 1)
     return f"{question[: match.start('one')]}{named}{question[match.end('one') :]}"
+
+
+def names_other_one(question: str) -> bool:
+    """Return whether a question is about "the other one"."""
+    return _OTHER_ONE.search(question) is not None
+
+
+def with_other_one(question: str, referent: Referent) -> str:
+    """Return a question with "the other one" replaced by what it refers to: "what is the right dog doing?"."""
+    match = _OTHER_ONE.search(question)
+    if match is None or not (description := referent("one")):
+        return question
+    return f"{question[: match.start()]}the {description}{question[match.end() :]}"
 
 
 def with_referents(question: str, referent: Referent) -> str:

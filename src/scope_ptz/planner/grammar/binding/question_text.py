@@ -20,7 +20,10 @@ _TWO_QUESTIONS = re.compile(
     r",? and (?:if so,? )?(?P<more>(?:what|which|where|how)\b.+)",
     re.IGNORECASE,
 )
-_HAS_MORE = r"which (?:one |preset |view |of them |place )?(?:has|have|shows|had) (?:the )?(most|fewest|more|fewer|least)\W*"
+_HAS_MORE = (
+    r"which (?:one |preset |view |of them |place |side |half |part |of the two )?(?:has|have|shows|had) (?:the )?"
+    r"(most|fewest|more|fewer|least)\W*"
+)
 _WINNER = re.compile(
     r"what(?:['’]s| is) the (?:total|sum|difference|result|answer)\W*|how many (?:is that|are there) (?:in total|"
     r"altogether|together)\W*"
@@ -45,6 +48,10 @@ _ANY_THERE = re.compile(
 )
 _DESCRIBE = re.compile(r"describe(?: each(?: one| view| of them)?)?\W*", re.IGNORECASE)
 _BEFORE_CAMERA = "(FILLER)* what BE (in_front_of_you|in_front_of_us|in_front_of_the_camera) (FILLER|NOW|QUESTION|STOP)*"
+_TOTAL = (
+    "(FILLER|AND|COMMA|so|then|ok|okay)* HOWMANY (BE|DET|PRON|there|that)* "
+    "(altogether|together|in_total|in_all|in total|in all|combined|total) (FILLER|then|QUESTION|STOP)*"
+)
 _AT_PRESET = re.compile(r"(.+?) (at|from|in) (the )?([\w -]+?)( preset| view| position)?\?*", re.IGNORECASE)
 
 
@@ -79,6 +86,11 @@ def bare_superlative(question: str) -> str:
 def is_request_to_describe(question: str) -> bool:
     """Return whether the question is the bare request "describe", "describe each view", "what is in front of you?" or the like."""
     return bool(_DESCRIBE.fullmatch(question.strip()) or full_match(_BEFORE_CAMERA, lexemes_of(question)))
+
+
+def is_request_for_total(question: str) -> bool:
+    """Return whether the question only asks for a total: "so how many in total?", "how many altogether?"."""
+    return full_match(_TOTAL, lexemes_of(question)) is not None
 
 
 def is_about_the_future(question: str, *, embedded: bool) -> bool:

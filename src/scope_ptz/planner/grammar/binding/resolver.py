@@ -7,27 +7,33 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from scope_ptz.english import listing
+from scope_ptz.english.numerals import ORDINALS
 from scope_ptz.planner.grammar import instruction_tree as ast
 from scope_ptz.planner.grammar.binding.asked_things import asked_thing
 from scope_ptz.planner.grammar.binding.commands import standing_command
 from scope_ptz.planner.grammar.binding.continuations import commands_of
 from scope_ptz.planner.grammar.binding.earlier_comparison import (
     counts_of_tour,
+    counts_to_add,
     earlier_winners,
     last_two_presets,
     left_view_won,
 )
+from scope_ptz.planner.grammar.binding.elliptic_questions import asks_colour, completed_question, item_of
 from scope_ptz.planner.grammar.binding.embedded_questions import direct_question
-from scope_ptz.planner.grammar.binding.focus import latest_counts
+from scope_ptz.planner.grammar.binding.focus import PLURAL, foci_of, things_to_add
 from scope_ptz.planner.grammar.binding.followup_steps import FollowUpSteps
+from scope_ptz.planner.grammar.binding.followups import is_other
 from scope_ptz.planner.grammar.binding.names import UnresolvedError
-from scope_ptz.planner.grammar.binding.noun_heads import names_several
+from scope_ptz.planner.grammar.binding.noun_heads import has_one, names_several
 from scope_ptz.planner.grammar.binding.offtopic import is_about_the_scene
 from scope_ptz.planner.grammar.binding.plain_questions import plain_question
 from scope_ptz.planner.grammar.binding.preset_matching import match_exactly, match_preset
 from scope_ptz.planner.grammar.binding.question_pronouns import (
     is_impersonal,
+    names_other_one,
     with_noun_for_one,
+    with_other_one,
     with_referents,
     without_anticipation,
 )
@@ -51,6 +57,8 @@ _RELATIVE_POSITION = re.compile(
     r"((?:to the )?(?:left|right) of|above|below|under|underneath|beneath|over|beyond|past|behind|beside|next to|in front of) \w",
     re.IGNORECASE,
 )
+
+_NUMBERED_ONE = re.compile(rf"\b(?:{'|'.join(ORDINALS)}|last) one$", re.IGNORECASE)
 
 _LOOKS = (
     ast.Count,
@@ -150,6 +158,8 @@ class Resolver(FollowUpSteps):
 
     def _gotopreset(self, step: ast.GoToPreset) -> Sequence[ast.Step]:
         ref = step.ref
+        if step.how == "show" and (one := _NUMBERED_ONE.search(ref.name)) is not None and foci_of(self.conversation[-1:]):
+            return self._zoomto(ast.ZoomTo(ast.Thing(one[0], definite=True)))  # "show me the first one" of the workers just listed
         if ref.is_first_view and self._can_return_to_start():
             return [ast.Back(to_start=True)]
         preset = self.find_place(ref) if self.presets is not None or step.how in {"go", "use"} or ref.explicit else None
@@ -158,7 +168,8 @@ class Resolver(FollowUpSteps):
         if step.how == "show" and not ref.explicit and preset is None:
             return [ast.ZoomTo(self.thing(ast.Thing(ref.name)))]
         if step.how == "bare" and preset is None and ref.has_article and self.conversation:
-            return self._whatabout(ast.WhatAbout(ast.Thing(re.sub(r"^(the|an?) ", "", ref.name))))
+            is_definite = ref.name.lower().startswith("the ")
+            return self._whatabout(ast.WhatAbout(ast.Thing(re.sub(r"^(the|an?) ", "", ref.name), definite=is_definite)))
         if step.how == "bare" and preset is None and not ref.explicit:
             raise UnresolvedError(f"I did not understand '{ref.name}'. Please say it another way, or name one of the presets.")
         return [ast.GoToPreset(self.place(ref))]
@@ -203,10 +214,13 @@ class Resolver(FollowUpSteps):
     def _total(self, step: ast.Total) -> Sequence[ast.Step]:
         self.has_counted = True
         if not step.parts:
-            counted = latest_counts(self.conversation)
-            if len(counted) < 2:
-                raise UnresolvedError("What shall I add up? Please name the things to count.")
-            return [ast.Total(tuple(ast.Tally(ast.Thing(description), None, self._view(None)) for description in counted))]
+            counted = things_to_add(self.conversation)
+            if len(counted) > 1:
+                return [ast.Total(tuple(ast.Tally(ast.Thing(description), None, self._view(None)) for description in counted))]
+            if at_presets := counts_to_add(self.earlier_counts):
+                parts = [ast.Tally(ast.Thing(c.description), ast.PresetRef(c.preset, explicit=True)) for c in at_presets]
+                return [ast.Total(tuple(parts), tuple(count.number for count in at_presets))]
+            raise UnresolvedError("What shall I add up? Please name the things to count.")
         return [ast.Total(self._tallies(step.parts))]
 
     def _difference(self, step: ast.Difference) -> Sequence[ast.Step]:
@@ -232,13 +246,16 @@ class Resolver(FollowUpSteps):
             return [*self._ask(replace(step, question=two[0])), *self._ask(ast.Ask(two[1], step.view))]
         if is_about_the_future(step.question, embedded=step.embedded):
             raise UnresolvedError("I cannot wait for something to happen. Shall I look for it now?")
+        if self.foci and not self.antecedent:
+            step = replace(step, question=completed_question(step.question, self.foci[-1]))
         asked, close_up = plain_question(step.question)
         question, place = self._question_and_place(direct_question(asked) if step.embedded else asked)
+        widening = self._to_group_view() if names_other_one(question) else []
         question = self._with_names(question)
         asked_about = asked_thing(question)
         self.antecedent = asked_about.description if asked_about else self.antecedent
         zoom = [ast.ZoomTo(self.thing(ast.Thing(close_up, definite=True)))] if close_up and not self.must_not_move else []
-        return [*place, *zoom, ast.Ask(question, self._view(step.view))]
+        return [*place, *widening, *zoom, ast.Ask(question, self._view(step.view))]
 
     def _with_names(self, question: str) -> str:
         """Return a question with its pronouns and "one" replaced by what they refer to.
@@ -247,12 +264,19 @@ class Resolver(FollowUpSteps):
         """
         if (rank := bare_superlative(question)) and (group := self._group()):
             return f"which {noun(group, 1)} is {rank}?"
+        question = with_other_one(question, lambda named: self._other(named) if self.foci else "")
         question = with_noun_for_one(without_anticipation(with_subject(question)), self._referent_of_ones)
         return (
             question
             if self.antecedent and _THE_THING_AND_IT.search(question)
-            else with_referents(question, self.referent_in_question)
+            else with_referents(question, lambda pronoun: self._item(question, pronoun) or self.referent_in_question(pronoun))
         )
+
+    def _item(self, question: str, pronoun: str) -> str:
+        """Return what the people spoken of wear or carry, if a question asks for its colour or says "it"; else nothing."""
+        last = self.foci[-1] if self.foci and not self.antecedent else None
+        is_meant = pronoun == "it" or (pronoun in PLURAL and asks_colour(question))
+        return item_of(last) if last is not None and is_meant else ""
 
     def _group(self) -> str:
         """Return the description of the things that were named last, if they may be several; otherwise nothing."""
@@ -264,8 +288,10 @@ class Resolver(FollowUpSteps):
     def _referent_of_ones(self, pronoun: str) -> str:  # noqa: ARG002 - has the signature of a referent
         return self.topic
 
-    def _earlier_comparison(self, comparison: ast.Comparison) -> ast.WhichPreset:
-        """Return the comparison of the presets at which earlier turns last counted the same thing."""
+    def _earlier_comparison(self, comparison: ast.Comparison) -> ast.WhichPreset | ast.Compare:
+        """Return the comparison of what was counted last: two things in one view, or the same thing at several presets."""
+        if len(two_things := things_to_add(self.conversation)) == 2:
+            return ast.Compare(ast.Thing(two_things[0]), ast.Thing(two_things[1]), comparison)
         if self.earlier_counts and (tour := counts_of_tour(self.earlier_counts)):
             places = tuple(ast.PresetRef(count.preset, explicit=True) for count in tour)
             numbers = tuple(count.number for count in tour)
@@ -284,6 +310,10 @@ class Resolver(FollowUpSteps):
 
     def _rescope(self, step: ast.Rescope) -> Sequence[ast.Step]:  # noqa: ARG002 - all methods for steps have this signature
         raise UnresolvedError("What shall I look for there?")
+
+    def _report(self, step: ast.Report) -> Sequence[ast.Step]:
+        is_about_earlier = step.calculation == "total" and not self.has_counted and self.conversation
+        return self._total(ast.Total(())) if is_about_earlier else [step]
 
     def _forbid(self, step: ast.Forbid) -> Sequence[ast.Step]:
         self.must_not_move = self.must_not_move or step.any_move
@@ -307,8 +337,9 @@ class Resolver(FollowUpSteps):
         if relative := _RELATIVE_POSITION.match(step.thing.text):
             raise UnresolvedError(f"I can centre on a thing, not on what is {relative[1]} it. By how many degrees shall I move?")
         if step.thing.pronoun in {"one", "both"} and self.topic:
-            return [ast.ZoomTo(ast.Thing(self._only_one(), definite=True))]
-        return [ast.ZoomTo(self.thing(step.thing))]
+            return self._zooms_on_group(step.thing.pronoun)
+        widening = self._to_group_view() if has_one(step.thing.text) or is_other(step.thing.text) else []
+        return [*widening, ast.ZoomTo(self.thing(step.thing))]
 
     def _track(self, step: ast.Track) -> Sequence[ast.Step]:
         return [replace(step, thing=self.thing(step.thing))]

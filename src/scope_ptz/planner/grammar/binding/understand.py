@@ -14,6 +14,7 @@ from scope_ptz.planner.grammar.binding.continuations import NOTHING_DONE, contin
 from scope_ptz.planner.grammar.binding.followups import followup_of, question_about_topic
 from scope_ptz.planner.grammar.binding.names import UnresolvedError
 from scope_ptz.planner.grammar.binding.offtopic import REFUSAL, is_harmful
+from scope_ptz.planner.grammar.binding.question_text import is_request_for_total
 from scope_ptz.planner.grammar.binding.resolver import Resolver
 from scope_ptz.planner.grammar.binding.small_talk import NEVER_MIND, asks_to_repeat_reply, dismisses, reply_to_small_talk
 from scope_ptz.planner.grammar.consistency.check import (
@@ -94,6 +95,8 @@ def _read(said: str, preset_names: tuple[str, ...] | None, conversation: Sequenc
     parsed = parse(said, preset_names or ())
     try:
         steps = question_about_topic(said, preset_names or ()) or parsed.steps
+        if conversation and is_request_for_total(said):
+            steps = (ast.Total(()),)
         if steps is None and conversation:
             steps = followup_of(said, preset_names or ())
         if steps is None:

@@ -127,7 +127,7 @@ def _after(turn: PastTurn, preset: str | None, *, home: bool) -> tuple[Pose | No
     """
     end, place = None, turn.start
     for outcome in (o for exchange in turn.exchanges for o in exchange.outcomes):
-        pose = _pose(outcome.result)
+        pose = pose_in(outcome.result)
         if outcome.error is not None or pose is None:
             continue
         end = pose
@@ -138,6 +138,7 @@ def _after(turn: PastTurn, preset: str | None, *, home: bool) -> tuple[Pose | No
     return end, preset if is_there else None, home and is_there
 
 
-def _pose(result: dict[str, Any] | None) -> Pose | None:
+def pose_in(result: dict[str, Any] | None) -> Pose | None:
+    """Return the pose in the result of a tool call; None if it has none."""
     pose = (result or {}).get("pose")
     return Pose(pose["pan_deg"], pose["tilt_deg"], pose["zoom"]) if isinstance(pose, dict) else None

@@ -74,8 +74,12 @@ class ComparisonSteps(ConditionEvaluation):
         return counts
 
     def _total(self, step: ast.Total) -> CallGenerator:
-        counts = yield from self._tallies(step.parts)
+        counts = list(step.numbers) or (yield from self._tallies(step.parts))
         self._last_was_yes = sum(counts) > 0
+        if step.numbers:
+            counted = sentences.counts_text(step.parts, counts).replace("I can see", "I counted", 1)
+            self._note(f"{counted}, which makes {sum(counts)} altogether")
+            return
         self._note(f"{sentences.counts_text(step.parts, counts)}, which makes {sum(counts)} altogether")
 
     def _difference(self, step: ast.Difference) -> CallGenerator:

@@ -19,6 +19,7 @@ from scope_ptz.planner.grammar import instruction_tree as ast
 from scope_ptz.planner.grammar.execution import answer_sentences as phrases
 from scope_ptz.planner.grammar.execution import move_sentences as motion
 from scope_ptz.planner.grammar.execution.camera_history import VisitedPosition, is_same_pose
+from scope_ptz.planner.grammar.execution.close_ups import CloseUpSteps
 from scope_ptz.planner.grammar.execution.closer_look import is_too_small
 from scope_ptz.planner.grammar.execution.comparisons import ComparisonSteps, stops_of_tour
 from scope_ptz.planner.grammar.execution.condition_evaluation import reading_question
@@ -35,7 +36,7 @@ _SOMEONE = frozenset({"anyone", "anybody", "someone", "somebody", "people"})
 _MAX_REQUESTED_MOVES = 100  # maximum number of moves of a loop that an instruction can request
 
 
-class Program(ReturnSteps, ComparisonSteps):
+class Program(CloseUpSteps, ReturnSteps, ComparisonSteps):
     """One run of the steps of an instruction, with one method for each step type."""
 
     def run(self, steps: Sequence[ast.Step]) -> CallGenerator:
@@ -123,23 +124,6 @@ class Program(ReturnSteps, ComparisonSteps):
         for _ in range(step.times):
             result = yield from self._camera_call("take_image")
             self._note(f"I saved a picture as {result['file']}" if result.get("file") else "I saved a picture")
-
-    def _zoomto(self, step: ast.ZoomTo) -> CallGenerator:
-        text = step.thing.text
-        if text in self._not_found:
-            return
-        result = yield from self._perception_call("zoom_to_object", description=text)
-        self._last_was_yes = bool(result.get("found")) if result is not None else None
-        if result is None or not result.get("found"):
-            self._not_found.add(text)
-            if result is not None:
-                self._note(f"I could not find {_the(step.thing)} in this view, so the camera stayed where it was")
-            return
-        self._moved_to_object = True
-        matches = result.get("matches", 1)
-        target = phrases.chosen_text(text, matches, result.get("chosen", "")) if matches > 1 else _the(step.thing)
-        limits = f", as far as the {motion.limits_text(result['limited_by'])}" if result.get("limited_by") else ""
-        self._note(f"I zoomed in on {target}{limits}")
 
     def _track(self, step: ast.Track) -> CallGenerator:
         text = step.thing.text

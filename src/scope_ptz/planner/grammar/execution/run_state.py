@@ -18,6 +18,8 @@ _MIN_LISTED_STOPS = 3
 """Minimum number of presets in an answer with a line for each of them."""
 
 _MOVING_TOOLS = frozenset({"adjust_ptz", "go_home", "go_to_preset", "zoom_to_object", "track_object"})
+_MOVES = frozenset({"adjust_ptz", "go_to_preset", "go_home"})
+"""The tools after which the camera is no longer at a close-up."""
 
 CallRequest = tuple[str, dict[str, Any]]
 """The name and arguments of a requested tool call."""
@@ -74,6 +76,7 @@ class RunState:
         viewpoints: The viewpoints of the presets; None for a camera that has a single one.
         assume_met: Whether to treat every condition as met, for plans without a camera.
         may_go_closer: Whether the camera may zoom in by itself when something is too small. Otherwise, the answer offers to.
+        wider_view: The pose from which the camera zoomed in on a thing; None if it is not at a close-up.
         moves_are_forbidden: Whether the user forbids camera moves.
         notes: The sentences of the answer.
         stops: The indices of the notes with which the report about a preset begins.
@@ -88,6 +91,7 @@ class RunState:
     may_go_closer: bool = False
     viewpoint: str | None = None
     viewpoints: Viewpoints | None = None
+    wider_view: Pose | None = None
     moves_are_forbidden: bool = False
     offers: list[Offer] = field(default_factory=list)  # closer looks that the user must allow first
     notes: list[str] = field(default_factory=list)
@@ -119,6 +123,7 @@ class RunState:
             self.pose = Pose(pose["pan_deg"], pose["tilt_deg"], pose["zoom"])
             self._note_viewpoint(tool, arguments)
             self.surveyed = () if tool in _MOVING_TOOLS else self.surveyed
+            self.wider_view = None if tool in _MOVES else self.wider_view
         if result and (source := result.get("source")) and source not in self.sources:
             self.sources.append(source)
         return outcome

@@ -58,6 +58,7 @@ from scope_ptz.planner.grammar.instruction_tree.moves import (
     Move,
     Part,
     Turn,
+    WiderView,
     Zoom,
 )
 from scope_ptz.planner.grammar.instruction_tree.steps import (
@@ -142,6 +143,7 @@ __all__ = [
     "Unclear",
     "WhatAbout",
     "WhichPreset",
+    "WiderView",
     "Zoom",
     "ZoomTo",
 ]

@@ -92,9 +92,15 @@ class Tally:
 
 @dataclass(frozen=True, slots=True)
 class Total:
-    """Count objects of several kinds, or at several presets, and add the counts."""
+    """Count objects of several kinds, or at several presets, and add the counts.
+
+    Attributes:
+        parts: What to count; nothing for the counts of the turns before.
+        numbers: The counts, if earlier turns have made them, so that the camera need not move; empty if they must be made.
+    """
 
     parts: tuple[Tally, ...]
+    numbers: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -107,6 +107,11 @@ class Back:
 
 
 @dataclass(frozen=True, slots=True)
+class WiderView:
+    """Return to the view before the last close-ups, because the next thing was chosen there; nothing if the camera is at none."""
+
+
+@dataclass(frozen=True, slots=True)
 class Home:
     """Go to the home view.
 

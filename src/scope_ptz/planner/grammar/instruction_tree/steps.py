@@ -32,7 +32,17 @@ from scope_ptz.planner.grammar.instruction_tree.looks import (
     WhatAbout,
     ZoomTo,
 )
-from scope_ptz.planner.grammar.instruction_tree.moves import Back, Forbid, Further, GoThere, GoToPreset, Home, ListPresets, Move
+from scope_ptz.planner.grammar.instruction_tree.moves import (
+    Back,
+    Forbid,
+    Further,
+    GoThere,
+    GoToPreset,
+    Home,
+    ListPresets,
+    Move,
+    WiderView,
+)
 
 if TYPE_CHECKING:
     from scope_ptz.planner.grammar.instruction_tree.conditions import Comparison, Condition, PresetRef, Thing
@@ -158,7 +168,7 @@ Step = (
     Move | Further | Back | Home | GoToPreset | GoThere | ListPresets | Snap | Count | Ask | Read | ZoomTo | Track | Repeat
     | DoAgain | Loop | If | EachTime | AtPlaces | SameAt | WhichPreset | FirstWith | Compare | BeforeAfter | Sweep | Forbid | Report
     | CameraState | Help | Reply | WhatAbout | Between | AtIntervals | CompareWithBefore | LookCloser | Total
-    | Difference | RankCounts | Mention | Rescope | Instead | Unclear
+    | Difference | RankCounts | Mention | Rescope | Instead | Unclear | WiderView
 )  # fmt: skip
 
 
