@@ -30,7 +30,13 @@ from scope_ptz.perception.ground_truth.answers.thing_names import (
     unknown_answer,
 )
 from scope_ptz.perception.ground_truth.answers.undecided import undecided_reason
-from scope_ptz.perception.ground_truth.answers.values import UNANSWERABLE_SUBJECTS, answer_absent, answer_fact_in_view, value_of
+from scope_ptz.perception.ground_truth.answers.values import (
+    UNANSWERABLE_SUBJECTS,
+    WRITTEN_FACTS,
+    answer_absent,
+    answer_fact_in_view,
+    value_of,
+)
 from scope_ptz.perception.ground_truth.answers.vehicle_interiors import answer_about_occupants, asked_vehicle
 from scope_ptz.perception.ground_truth.answers.verdicts import missing_reference
 from scope_ptz.perception.ground_truth.relations import NEAR_M, relation_holds, stands_above
@@ -93,6 +99,8 @@ def answer_what(view: View, question: tree.What) -> TruthAnswer:
     """Answer with the names of all matching things."""
     if _refers_to_list(question.what):
         return _answer_listed(view, question)
+    if question.tests == (tree.Says(()),):  # "what signs can you read?" asks for what they say
+        return answer_read(view, tree.Read(question.what))
     missing = next((m for m in (missing_reference(view, t) for t in question.tests) if m is not None), None)
     if missing is not None:
         return answer_absent(view, missing)
@@ -217,7 +225,8 @@ def answer_identify(view: View, question: tree.Identify) -> TruthAnswer:
     phrase = question.what.phrases[0]
     fact = answer_fact_in_view(view, phrase.words)
     has_only_on_tests = all(isinstance(t, tree.Relation) and t.kind == "on" for t in phrase.tests)
-    if fact.known and has_only_on_tests and phrase.order is None:
+    is_written = bool(WRITTEN_FACTS & set(phrase.words))
+    if (fact.known or is_written) and has_only_on_tests and phrase.order is None:
         return fact
     matches = find(view, question.what)
     if not matches:

@@ -45,6 +45,8 @@ UNANSWERABLE_SUBJECTS = frozenset(
     "it time day weather date temperature mood today season month year hour brand owner price name age".split()  # noqa: SIM905
 )
 """Subjects about which a picture contains no information."""
+WRITTEN_FACTS = frozenset({"limit", "hours"})
+"""Facts that are written on signs, and whose names also mean the signs: "the speed limit", "the opening hours"."""
 _ACTIVITY_WORDS = frozenset(["doing", "activity", "action", "up"])
 # Groups of words that ask for the same fact.
 _KEY_SYNONYMS = {
