@@ -100,6 +100,22 @@ def view_with(*texts: TextSighting) -> View:
         ),
         ("which signs can you read?", (text("50", 0, 1), text("A1", 0, 1, parent="sign-02")), 'The signs read "50" and "A1".'),
         (
+            "is there a sign that mentions coffee?",
+            (text("50", 0, 1), text("A1", 0, 1, parent="sign-02", cap_px=5)),
+            'I cannot tell whether any of the 3 signs says "COFFEE": not all of their text can be read from here.',
+        ),
+        (
+            "does the road works sign mention coffee?",
+            (text("SLOW", 0, 1, parent="sign-03", cap_px=5),),
+            'I cannot tell whether the road works sign says "COFFEE", because it is too small to read.',
+        ),
+        (
+            "do any of the signs mention coffee?",
+            (text("COFFEE", 0, 1), text("A1", 0, 1, parent="sign-02", cap_px=5)),
+            'Yes, 1 of the 3 signs says "COFFEE": the one on the right.',
+        ),
+        ("what's the road works sign say?", (text("SLOW", 0, 1, parent="sign-03"),), 'The road works sign reads "SLOW".'),
+        (
             "what is the speed limit?",
             (text("50", 0, 1, cap_px=5),),
             "The speed limit is on the speed limit sign, but it is too small to read.",

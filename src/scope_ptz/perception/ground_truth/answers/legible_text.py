@@ -43,8 +43,7 @@ def answer_read(view: View, question: tree.Read) -> TruthAnswer:
         if owners and all(_names_any_sign(view, phrase) for phrase in what.phrases) and find(view, owners[0]):
             return answer_read(view, tree.Read(owners[0]))  # a sign on a cabin may be the cabin's own lettering
         return unknown_answer(f"I cannot tell: {none_in_view(view, what)}")
-    if not is_plural(what):
-        things = _only_of_colour(what, things)
+    things = things if is_plural(what) else _only_of_colour(what, things)
     texts = texts_on(view, things, question.plate)
     if _is_any_sign(what) and (lettering := _legible_lettering(view, texts)):
         reply = _quote_signs_and_lettering(view, what, texts, lettering)
@@ -63,7 +62,7 @@ def _names_any_sign(view: View, phrase: tree.Phrase) -> bool:
     return spans[:1] == [(0, len(phrase.words))] and concept is not None and "sign" in lexicon().kinds(concept)
 
 
-def _only_of_colour(what: tree.Description, things: Sequence[Thing]) -> Sequence[Thing]:
+def _only_of_colour(what: tree.Description, things: list[Thing]) -> list[Thing]:
     """Return the things that have no colour but the requested one, if there are any: a red sign before one with a red rim."""
     colours = {word for phrase in what.phrases for word in phrase.words if word in english.COLOURS}
     return [t for t in things if {colour_of(t)} == colours] or things

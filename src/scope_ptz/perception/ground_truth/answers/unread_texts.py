@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Literal
 
 from scope_ptz.english.grammar.closer_views import closer_views_sentence
+from scope_ptz.english.grammar.questions import question_tree as tree
 from scope_ptz.english.grammar.questions.question_parser import parse_description
+from scope_ptz.perception.ground_truth.answers.restating import noun_phrase
 from scope_ptz.perception.ground_truth.answers.thing_names import position_words
-from scope_ptz.perception.ground_truth.thing_search import find
+from scope_ptz.perception.ground_truth.thing_search import find, holds
 from scope_ptz.perception.ground_truth.view import Thing, View
 from scope_ptz.simulator.truth import MAX_READING_ANGLE_DEG, MIN_CAP_HEIGHT_PX, MIN_UNHIDDEN_FRACTION, TextSighting
 
@@ -45,6 +48,29 @@ def unread_rest(view: View, texts: Sequence[TextSighting]) -> str:
     """Return the sentence about visible text that is not legible, beside the text that is; empty if there is none."""
     rest = [t for t in texts if not t.legible and t.unhidden_fraction > 0 and t.text.parent in view.by_id]
     return f". The rest is {_REASONS[_problem(_largest(rest))]} to read" if rest else ""
+
+
+def unread_reason(view: View, question: tree.Exists | tree.Count | tree.What | tree.YesNo) -> str:
+    """Return why it is open whether any thing says something: no legible text does, but not all texts are legible. Else empty."""
+    what = question.subject if isinstance(question, tree.YesNo) else question.what
+    tests = () if isinstance(question, tree.Exists) else question.tests
+    phrase = what.phrases[0]
+    said = next((t.words for t in (*phrase.tests, *tests) if isinstance(t, tree.Says) and t.words), None)
+    if said is None or len(what.phrases) > 1:
+        return ""
+    silent = replace(phrase, tests=tuple(t for t in phrase.tests if not isinstance(t, tree.Says)))
+    candidates = find(view, tree.Description((silent,)))
+    answers = [holds(view, t, tree.Says(said)) for t in candidates]
+    if True in answers or None not in answers:
+        return ""
+    kind, literal = noun_phrase(view, tree.Description((silent,)), plural=len(candidates) > 1), " ".join(said).upper()
+    if len(candidates) == 1:
+        unread = [t for t in view.texts_on(candidates[0]) if not t.legible]
+        return f'I cannot tell whether the {kind} says "{literal}", because {illegibility(unread)} to read'
+    # The reason does not name a size, because a closer view of one of them would not decide it.
+    return (
+        f'I cannot tell whether any of the {len(candidates)} {kind} says "{literal}": not all of their text can be read from here'
+    )
 
 
 def closer_views(view: View, texts: Sequence[TextSighting]) -> str:
