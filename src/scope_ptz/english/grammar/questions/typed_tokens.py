@@ -43,7 +43,7 @@ _PARTICLES = frozenset(
 @cache
 def _phrases() -> tuple[Mapping[tuple[str, ...], tuple[str, str]], int]:
     """Return every closed-class phrase with its type and value, and the length of the longest."""
-    mention = {(word,): ("SAYS", word) for word in ("mention", "mentions", "mentioning")}
+    mention: dict[tuple[str, ...], tuple[str, str]] = {(word,): ("SAYS", word) for word in ("mention", "mentions", "mentioning")}
     table = {**question_phrases(), **mention, (",",): ("COMMA", ","), (";",): ("COMMA", ";")}
     return table, max(map(len, table))
 
