@@ -52,6 +52,21 @@ def test_it_reads_several_signs_one_after_the_other() -> None:
     )
 
 
+def test_they_are_read_one_by_one() -> None:
+    stage = Stage([3, READ])
+    counted = stage.turn("how many signs are there?")
+    stage.run("read them one by one", (counted,))
+    calls = [arguments for name, arguments in stage.calls if name == "query_answer"]
+    assert calls == [{"question": "What do the signs say?", "view": "current"}]
+
+
+def test_names_keep_their_capitals() -> None:
+    several = {"answer": f"{SMALL['answer']} A closer view may help with the CCTV sign.", "known": False}
+    read = {"answer": 'The cctv sign reads "ON".', "known": True}
+    finish = Stage([several, True, read], lands=CLOSE, simulated=True).run("what do the signs say?")
+    assert 'The CCTV sign reads "ON".' in finish.text
+
+
 def test_it_says_how_many_signs_it_did_not_go_closer_to() -> None:
     several = {
         "answer": "There is text on the signs, but it is too small to read. "

@@ -121,12 +121,13 @@ def names_plates(phrase: tree.Phrase) -> bool:
 
 
 def _is_speed_limit(view: View, text: TextSighting) -> bool:
-    """Return whether a text is a speed limit: either the scene says so, or the text is a multiple of ten on a sign."""
+    """Return whether a text is a speed limit: a number that the scene states, any on a speed sign, or a multiple of ten on a sign."""
     owner = view.instances[text.text.parent]
     content = text.text.text.strip()
     if "signal" in owner.attributes:
         return content == str(owner.attributes["signal"])
-    return content.isdigit() and int(content) % 10 == 0 and "sign" in concepts_of(owner)
+    concepts = concepts_of(owner)
+    return content.isdigit() and ("speed sign" in concepts or (int(content) % 10 == 0 and "sign" in concepts))
 
 
 def _quote_texts(view: View, what: tree.Description | None, texts: Sequence[TextSighting], plate: bool) -> TruthAnswer:
@@ -227,7 +228,7 @@ def answer_from_signs(view: View, signs: Sequence[Thing], fact: str) -> TruthAns
         return TruthAnswer(english.sentence(f"the {fact} reads {english.listing(quotes(legible))}"))
     illegible = [t for t in texts if not t.legible]
     if not illegible:
-        return None
+        return _quote_texts(view, None, texts, plate=False) if texts else None
     largest = max(illegible, key=lambda t: t.cap_height_px)
     verb = "are" if english.is_plural(fact) else "is"
     return unknown_answer(

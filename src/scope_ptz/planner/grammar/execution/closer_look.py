@@ -148,8 +148,10 @@ class CloserLook(RunState):
             reply = yield from self._answer_from_here(question, thing)
             yield from self._put_back(start)
             if reply is not None:
-                seen.append(f"the {thing}")
-                answers.append({**reply, "answer": closer_views_in(reply["answer"])[0]})
+                seen.append(thing if thing.split()[-1].isdigit() else f"the {thing}")  # "dock number 8"
+                text = closer_views_in(reply["answer"])[0]
+                text = re.sub(re.escape(thing), lambda _, name=thing: name, text, count=1, flags=re.IGNORECASE)  # "the CCTV sign"
+                answers.append({**reply, "answer": text[:1].upper() + text[1:]})
         if not seen:
             return before
         zoomed_in = f"I zoomed in on {english.listing(seen)}"

@@ -36,7 +36,7 @@ def read_step(source: Source, lexemes: Sequence[Lexeme], view: View | None) -> S
     match = full_match(
         (
             rf"{SKIP} (READ|READ-ING|DESCRIBE READ|TELL READ|try READ|see if SELF can READ) {ME} (out|off|aloud|to "
-            rf"me|back)? (?P<thing>_+?) (out_loud|out|loud|aloud|to me|to us|for me|off|again|back)* {SKIP}"
+            rf"me|back)? (?P<thing>_+?) (out_loud|out|loud|aloud|to me|to us|for me|off|again|back|INTURN|separately)* {SKIP}"
         ),
         lexemes,
     )
