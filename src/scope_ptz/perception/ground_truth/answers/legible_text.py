@@ -121,7 +121,7 @@ def names_plates(phrase: tree.Phrase) -> bool:
 
 
 def _is_speed_limit(view: View, text: TextSighting) -> bool:
-    """Return whether a text is a speed limit: a number that the scene states, any on a speed sign, or a multiple of ten on a sign."""
+    """Return whether a text is a speed limit: one that the scene states, any number on a speed sign, or a multiple of ten."""
     owner = view.instances[text.text.parent]
     content = text.text.text.strip()
     if "signal" in owner.attributes:

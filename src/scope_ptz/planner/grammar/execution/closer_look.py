@@ -150,7 +150,7 @@ class CloserLook(RunState):
             if reply is not None:
                 seen.append(thing if thing.split()[-1].isdigit() else f"the {thing}")  # "dock number 8"
                 text = closer_views_in(reply["answer"])[0]
-                text = re.sub(re.escape(thing), lambda _, name=thing: name, text, count=1, flags=re.IGNORECASE)  # "the CCTV sign"
+                text = re.sub(re.escape(thing), thing.replace("\\", r"\\"), text, count=1, flags=re.IGNORECASE)  # "the CCTV sign"
                 answers.append({**reply, "answer": text[:1].upper() + text[1:]})
         if not seen:
             return before
