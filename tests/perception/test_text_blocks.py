@@ -52,6 +52,24 @@ def test_texts_next_to_each_other_are_one_block(texts: list[TextSighting], lines
     assert [block.lines for block in blocks_of(texts)] == lines
 
 
+@pytest.mark.parametrize(
+    ("goods", "price"), [("plums", "1.80"), ("leeks", "0.95"), ("sausages", "6.20")]
+)  # fmt: skip
+def test_a_price_may_be_in_the_row_below_its_goods(goods: str, price: str) -> None:
+    board = [
+        text("PLUMS", 0.0, 1.0), text("1.80 A KILO", 0.0, 0.8), text("LEEKS 0.95", 0.0, 0.6),
+        text("SAUSAGES", 0.0, 0.4), text("6.20", 0.0, 0.2),
+    ]  # fmt: skip
+    reply = answer(view_with(*board), parse_question(f"how much are the {goods}?"))
+    assert reply.text == f"The price of the {goods} is {price}."
+
+
+def test_a_price_above_its_goods_is_not_that_of_the_goods_above_it() -> None:
+    board = [text("1.20", 0.0, 1.0), text("PLUMS", 0.0, 0.8), text("6.20", 0.0, 0.6), text("LEEKS", 0.0, 0.4)]
+    reply = answer(view_with(*board), parse_question("how much are the plums?"))
+    assert not reply.known
+
+
 def view_with(*texts: TextSighting) -> View:
     return read_view(replace(yard.truth(), texts=texts), yard.SCENE, 5.0)
 
@@ -62,7 +80,45 @@ def view_with(*texts: TextSighting) -> View:
         (
             "what do the signs say?",
             (text("50", 0, 1), text("A1", 0, 1, parent="sign-02", cap_px=5), text("DIG", 0, 1, parent="sign-03", cap_px=4)),
-            'I can read 1 of the 3 signs in view: "50". The other 2 are too small to read from here.',
+            'I can read 1 of the 3 signs in view: "50". The other 2 are too small to read from here. '
+            "A closer view may help with the direction sign and the road works sign.",
+        ),
+        (
+            "what does the sign say?",
+            (text("50", 0, 1), text("A1", 0, 1, parent="sign-02", cap_px=5), text("DIG", 0, 1, parent="sign-03", cap_px=4)),
+            'The speed limit sign reads "50". The other 2 signs in view are too small to read from here.',
+        ),
+        (
+            "what does the sign say?",
+            (text("A1", 0, 1, parent="sign-02", cap_px=5), replace(text("DIG", 0, 1, parent="sign-03"), angle_deg=70.0)),
+            "There is text on the sign, but it is too small to read. A closer view may help with the direction sign.",
+        ),
+        (
+            "what signs can you read?",
+            (text("A1", 0, 1, parent="sign-02", cap_px=5),),
+            "There is text on the signs, but it is too small to read. A closer view may help with the direction sign.",
+        ),
+        ("which signs can you read?", (text("50", 0, 1), text("A1", 0, 1, parent="sign-02")), 'The signs read "50" and "A1".'),
+        (
+            "is there a sign that mentions coffee?",
+            (text("50", 0, 1), text("A1", 0, 1, parent="sign-02", cap_px=5)),
+            'I cannot tell whether any of the 3 signs says "COFFEE": not all of their text can be read from here.',
+        ),
+        (
+            "does the road works sign mention coffee?",
+            (text("SLOW", 0, 1, parent="sign-03", cap_px=5),),
+            'I cannot tell whether the road works sign says "COFFEE", because it is too small to read.',
+        ),
+        (
+            "do any of the signs mention coffee?",
+            (text("COFFEE", 0, 1), text("A1", 0, 1, parent="sign-02", cap_px=5)),
+            'Yes, 1 of the 3 signs says "COFFEE": the one on the right.',
+        ),
+        ("what's the road works sign say?", (text("SLOW", 0, 1, parent="sign-03"),), 'The road works sign reads "SLOW".'),
+        (
+            "what is the speed limit?",
+            (text("50", 0, 1, cap_px=5),),
+            "The speed limit is on the speed limit sign, but it is too small to read.",
         ),
         (
             "what do the signs say?",

@@ -30,16 +30,98 @@ def test_it_zooms_in_looks_again_and_puts_the_camera_back() -> None:
     )
 
 
-def test_of_several_signs_it_goes_closer_to_the_one_with_the_largest_text() -> None:
+def test_it_reads_several_signs_one_after_the_other() -> None:
     several = {
-        "answer": "There is text on the signs, but it is too small to read; the largest that faces the camera is on the exit sign.",
+        "answer": 'I can read 1 of the 3 signs in view: "50". The other 2 are too small to read from here. '
+        "A closer view may help with the exit sign and the price card for leeks.",
+        "known": True,
+    }
+    exit_sign = {"answer": 'The exit sign reads "EXIT".', "known": True}
+    card = {"answer": "There is text on the price card for leeks, but it is seen too much from the side to read.", "known": False}
+    stage = Stage([several, True, exit_sign, True, card], pose=Pose(10, 0, 1), lands=CLOSE, simulated=True)
+    finish = stage.run("read all the signs please")
+    assert [arguments.get("description") or arguments.get("question") for _, arguments in stage.calls] == [
+        "What do the signs say?", "exit sign", "What does the exit sign say?", None,
+        "price card for leeks", "What does the price card for leeks say?", None,
+    ]  # fmt: skip
+    assert stage.pose == Pose(10, 0, 1)
+    assert finish.text.startswith(
+        'I can read 1 of the 3 signs in view: "50". The other 2 are too small to read from here. '
+        "I zoomed in on the exit sign and the price card for leeks, and put the camera back afterwards. "
+        'The exit sign reads "EXIT". There is text on the price card for leeks, but it is seen too much from the side to read.'
+    )
+
+
+def test_they_are_read_one_by_one() -> None:
+    stage = Stage([3, READ])
+    counted = stage.turn("how many signs are there?")
+    stage.run("read them one by one", (counted,))
+    calls = [arguments for name, arguments in stage.calls if name == "query_answer"]
+    assert calls == [{"question": "What do the signs say?", "view": "current"}]
+
+
+def test_names_keep_their_capitals() -> None:
+    several = {"answer": f"{SMALL['answer']} A closer view may help with the CCTV sign.", "known": False}
+    read = {"answer": 'The cctv sign reads "ON".', "known": True}
+    finish = Stage([several, True, read], lands=CLOSE, simulated=True).run("what do the signs say?")
+    assert 'The CCTV sign reads "ON".' in finish.text
+
+
+def test_it_says_how_many_signs_it_did_not_go_closer_to() -> None:
+    several = {
+        "answer": "There is text on the signs, but it is too small to read. "
+        "A closer view may help with the exit sign, and with 7 more.",
         "known": False,
     }
-    stage = Stage([several, True, READ], lands=CLOSE, simulated=True)
-    finish = stage.run("read all the signs please")
-    assert stage.calls[1] == ("zoom_to_object", {"description": "exit sign"})
-    assert stage.calls[2][1]["question"] == "What does the exit sign say?"
-    assert finish.text.startswith("I zoomed in on the exit sign only, which has the largest text, and put the camera back")
+    finish = Stage([several, True, READ], lands=CLOSE, simulated=True).run("read every sign you can see")
+    assert finish.text.startswith(
+        "I zoomed in on the exit sign, and put the camera back afterwards; I did not go closer to the other 7. "
+        'The sign reads "STOP".'
+    )
+
+
+def test_signs_that_stay_illegible_are_not_read() -> None:
+    several = {"answer": f"{SMALL['answer']} A closer view may help with the exit sign.", "known": False}
+    finish = Stage([several, True, SMALL], lands=Pose(12, -3, LIMITS.max_zoom), simulated=True).run("what do the signs say?")
+    assert finish.text.startswith(
+        "I zoomed in on the exit sign, but that did not help, so I put the camera back. There is text on the sign"
+    )
+
+
+def test_it_stays_if_the_question_is_not_about_what_signs_say() -> None:
+    several = {"answer": f"{SMALL['answer']} A closer view may help with the exit sign.", "known": False}
+    stage = Stage([several], simulated=True)
+    stage.run("which signs can you read from here?")
+    assert [name for name, _ in stage.calls] == ["query_answer"]
+
+
+SMALL_PLATE = {"answer": "There is a number plate on the van, but it is too small to read.", "known": False}
+
+
+def test_zooming_in_until_something_can_be_read_keeps_it_in_view() -> None:
+    stage = Stage([SMALL, True, READ], lands=CLOSE)
+    finish = stage.run("zoom in until you can read the blue sign")
+    assert [name for name, _ in stage.calls] == ["query_answer", "zoom_to_object", "query_answer"]
+    assert stage.calls[1] == ("zoom_to_object", {"description": "blue sign"})
+    assert finish.text.startswith('I zoomed in on the blue sign. The sign reads "STOP".')
+    assert stage.pose == CLOSE
+
+
+def test_a_plate_that_stays_illegible_leaves_the_camera_where_it_was() -> None:
+    stage = Stage([SMALL_PLATE, *[True, SMALL_PLATE] * 3], pose=Pose(10, 0, 1), lands=CLOSE)
+    finish = stage.run("zoom in until you can read the number plate of the van")
+    assert [a["description"] for name, a in stage.calls if name == "zoom_to_object"] == [
+        "number plate of the van", "van", "number plate of the van"
+    ]  # fmt: skip
+    assert stage.pose == Pose(10, 0, 1)
+    assert "that did not help, so I put the camera back. There is a number plate on the van" in finish.text
+
+
+def test_it_does_not_zoom_in_on_what_is_seen_from_the_side() -> None:
+    oblique = {"answer": "There is text on the sign, but it is seen too much from the side to read.", "known": False}
+    stage = Stage([oblique])
+    stage.run("keep zooming in until you can read the sign")
+    assert [name for name, _ in stage.calls] == ["query_answer"]
 
 
 def test_only_perception_knows_how_many_signs_are_legible() -> None:
@@ -109,7 +191,7 @@ def test_a_position_in_the_frame_is_removed(text: str, expected: str) -> None:
     "answer",
     [
         READ,
-        {"answer": "There is text on the sign, but it is too oblique to read.", "known": False},
+        {"answer": "There is text on the sign, but it is seen too much from the side to read.", "known": False},
         {"answer": "There is text on the sign, but too much of it is hidden or cut off to read.", "known": False},
         {"answer": "I cannot tell: there is no sign in view.", "known": False},
         {"answer": "The letters are too small for a road sign, but it reads STOP.", "known": True},

@@ -52,9 +52,9 @@ def test_a_loop_may_do_something_else_when_it_fails() -> None:
 
 
 def test_zooming_until_a_sign_can_be_read() -> None:
-    stage = Stage([{"answer": "too small", "known": False}, {"answer": "ROAD WORK", "known": True}])
+    stage = Stage([{"answer": "too small", "known": False}, True, {"answer": "ROAD WORK", "known": True}])
     finish = stage.run("keep zooming in until you can read the sign")
-    assert names(stage) == ["query_answer", "adjust_ptz", "query_answer"]
+    assert names(stage) == ["query_answer", "zoom_to_object", "query_answer"]
     assert "ROAD WORK" in finish.text
 
 

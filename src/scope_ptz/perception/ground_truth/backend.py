@@ -19,7 +19,7 @@ from scope_ptz.simulator.truth import ViewTruth, view_truth
 
 if TYPE_CHECKING:
     from scope_ptz.perception.ground_truth.answers import TruthAnswer
-    from scope_ptz.perception.ground_truth.answers.legible_text import TextRegion
+    from scope_ptz.perception.ground_truth.answers.text_regions import TextRegion
     from scope_ptz.perception.ground_truth.view import Thing, View
 
 GROUND_TRUTH_VERSION = 4
@@ -147,8 +147,8 @@ class GroundTruthPerception(Perception):
         """Return the things or texts that match a description, and whether there can be no others in view."""
         from scope_ptz.english.grammar.questions.question_parser import parse_description
         from scope_ptz.english.grammar.questions.recognition import is_description
-        from scope_ptz.perception.ground_truth.answers.legible_text import find_text_regions
         from scope_ptz.perception.ground_truth.answers.restating import unmodelled_place
+        from scope_ptz.perception.ground_truth.answers.text_regions import find_text_regions
         from scope_ptz.perception.ground_truth.answers.undecided import undecided_reason
         from scope_ptz.perception.ground_truth.thing_search import find
         from scope_ptz.perception.ground_truth.unclear_things import unclear_matches

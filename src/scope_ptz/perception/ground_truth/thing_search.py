@@ -267,7 +267,9 @@ def holds(view: View, thing: Thing, test: tree.Test) -> bool | None:
             answer = fits_words(view, thing, words)
             return True if answer is None and all(_is_ignorable(view, thing, x) for x in words) else answer
         case tree.Says(words=words):
-            return has_text(thing, words) or (len(words) == 1 and is_facing(thing, words[0]) is True)
+            if has_text(thing, words) or (len(words) == 1 and is_facing(thing, words[0]) is True):
+                return True
+            return None if any(not t.legible for t in view.texts_on(thing)) else False
         case tree.Has(what=what, worn=worn):
             is_open = is_open_item(view, thing, what, worn or ("person" in thing.concepts and as_worn(test) is not None))
             return _has(view, thing, what) or (None if is_open else False)

@@ -43,7 +43,8 @@ _PARTICLES = frozenset(
 @cache
 def _phrases() -> tuple[Mapping[tuple[str, ...], tuple[str, str]], int]:
     """Return every closed-class phrase with its type and value, and the length of the longest."""
-    table = {**question_phrases(), (",",): ("COMMA", ","), (";",): ("COMMA", ";")}
+    mention: dict[tuple[str, ...], tuple[str, str]] = {(word,): ("SAYS", word) for word in ("mention", "mentions", "mentioning")}
+    table = {**question_phrases(), **mention, (",",): ("COMMA", ","), (";",): ("COMMA", ";")}
     return table, max(map(len, table))
 
 
@@ -68,6 +69,8 @@ def tokenise(text: str) -> list[Token]:
             i += 1
     while tokens and tokens[0].type == "COMMA":
         tokens.pop(0)
+    if [t.type for t in tokens[:2]] == ["WHAT", "IS"] and (tokens[-1].type, str(tokens[-1])) == ("SAYS", "say"):
+        tokens[1] = Token("DOES", "does")  # "what's the sign say?"
     if [t.type for t in tokens[-2:]] == ["W", "THERE"] and tokens[0].type != "IS":
         tokens.pop()  # "the cars parked there", unlike "is anyone there"
     return tokens
@@ -100,6 +103,8 @@ def _add_closed_class(tokens: list[Token], words: list[str], i: int, size: int) 
         tokens.append(Token("ORD", str(english.ordinal(raw))))
     elif (kind == "METRES" and before != "NUM") or (kind == "LIST" and before in {"W", "TEXTNOUN"}):
         tokens += [Token("W", word) for word in words[i : i + size]]  # "the meter", "the price list"
+    elif kind == "RANK" and before == "W" and i + size < len(words) and lexicon().concept(words[i + size]) is not None:
+        tokens.append(Token("W", raw))  # "the taxi rank sign"
     elif raw in _PARTICLES and i + size == len(words):
         if not tokens or tokens[0].type not in {"WHAT", "WHICH", "WHERE"}:
             tokens.append(Token("W", raw))
@@ -151,6 +156,8 @@ def _literal(words: list[str], start: int) -> tuple[str, int]:
     """Return the text after "says" (the quoted string, or everything up to the end) and the index of the next word."""
     if start < len(words) and words[start][0] in "\"'":
         return words[start].strip("\"'"), start + 1
+    if words[start : start + 2] in (["anything", "about"], ["something", "about"]):
+        start += 2
     end = start
     while end < len(words) and words[end] not in _LITERAL_TERMINATORS:
         end += 1

@@ -25,6 +25,7 @@ from scope_ptz.perception.ground_truth.answers.ordered_things import answer_in_o
 from scope_ptz.perception.ground_truth.answers.scene import answer_describe, answer_happening
 from scope_ptz.perception.ground_truth.answers.stated_facts import answer_stated_fact
 from scope_ptz.perception.ground_truth.answers.thing_names import TruthAnswer, unknown_answer
+from scope_ptz.perception.ground_truth.answers.unread_texts import unread_reason
 from scope_ptz.perception.ground_truth.answers.values import answer_attribute
 from scope_ptz.perception.ground_truth.answers.verdicts import answer_is_a, answer_yes_no
 from scope_ptz.perception.ground_truth.view import View
@@ -34,6 +35,8 @@ __all__ = ["TruthAnswer", "answer"]
 
 def answer(view: View, question: tree.Question | None) -> TruthAnswer:
     """Return the answer to a parsed question; ``question`` is None if the parser did not understand the text."""
+    if isinstance(question, tree.Exists | tree.Count | tree.What | tree.YesNo) and (reason := unread_reason(view, question)):
+        return unknown_answer(reason)
     match question:
         case tree.Exists():
             return answer_exists(view, question)

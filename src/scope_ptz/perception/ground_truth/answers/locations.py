@@ -8,6 +8,7 @@ from dataclasses import replace
 from scope_ptz import english
 from scope_ptz.english.grammar.lexicon import nouns_in
 from scope_ptz.english.grammar.questions import question_tree as tree
+from scope_ptz.perception.ground_truth.answers.clock_times import answer_clock_time
 from scope_ptz.perception.ground_truth.answers.counted_things import add_tests
 from scope_ptz.perception.ground_truth.answers.legible_text import answer_read
 from scope_ptz.perception.ground_truth.answers.restating import (
@@ -30,7 +31,13 @@ from scope_ptz.perception.ground_truth.answers.thing_names import (
     unknown_answer,
 )
 from scope_ptz.perception.ground_truth.answers.undecided import undecided_reason
-from scope_ptz.perception.ground_truth.answers.values import UNANSWERABLE_SUBJECTS, answer_absent, answer_fact_in_view, value_of
+from scope_ptz.perception.ground_truth.answers.values import (
+    UNANSWERABLE_SUBJECTS,
+    WRITTEN_FACTS,
+    answer_absent,
+    answer_fact_in_view,
+    value_of,
+)
 from scope_ptz.perception.ground_truth.answers.vehicle_interiors import answer_about_occupants, asked_vehicle
 from scope_ptz.perception.ground_truth.answers.verdicts import missing_reference
 from scope_ptz.perception.ground_truth.relations import NEAR_M, relation_holds, stands_above
@@ -93,6 +100,8 @@ def answer_what(view: View, question: tree.What) -> TruthAnswer:
     """Answer with the names of all matching things."""
     if _refers_to_list(question.what):
         return _answer_listed(view, question)
+    if question.tests == (tree.Says(()),):  # "what signs can you read?" asks for what they say
+        return answer_read(view, tree.Read(question.what))
     missing = next((m for m in (missing_reference(view, t) for t in question.tests) if m is not None), None)
     if missing is not None:
         return answer_absent(view, missing)
@@ -212,6 +221,11 @@ def answer_kind_of(view: View, question: tree.KindOf) -> TruthAnswer:
     return known_answer(f"I can see {english.listing([english.counted(count, kind) for kind, count in kinds.items()])}")
 
 
+def _clocks_of(view: View, test: tree.Test) -> list[Thing]:
+    """Return the clocks in "the time on the clock"; none for other tests."""
+    return [t for t in find(view, test.other) if "clock" in t.concepts] if isinstance(test, tree.Relation) else []
+
+
 def answer_identify(view: View, question: tree.Identify) -> TruthAnswer:
     """Answer what a thing is. If the words name a fact ("the speed limit"), answer with that fact."""
     if (vehicle := asked_vehicle(view, question.what)) is not None:
@@ -219,7 +233,10 @@ def answer_identify(view: View, question: tree.Identify) -> TruthAnswer:
     phrase = question.what.phrases[0]
     fact = answer_fact_in_view(view, phrase.words)
     has_only_on_tests = all(isinstance(t, tree.Relation) and t.kind == "on" for t in phrase.tests)
-    if fact.known and has_only_on_tests and phrase.order is None:
+    if phrase.words == ("time",) and (clocks := [t for test in phrase.tests for t in _clocks_of(view, test)]):
+        return answer_clock_time(clocks)
+    is_written = bool(WRITTEN_FACTS & set(phrase.words))
+    if (fact.known or is_written) and has_only_on_tests and phrase.order is None:
         return fact
     matches = find(view, question.what)
     if not matches:

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from scope_ptz import english
 from scope_ptz.english.grammar.questions import question_tree as tree
-from scope_ptz.perception.ground_truth.answers.legible_text import illegibility, is_only_too_small
 from scope_ptz.perception.ground_truth.answers.restating import phrase_as_asked
+from scope_ptz.perception.ground_truth.answers.text_blocks import blocks_of
 from scope_ptz.perception.ground_truth.answers.thing_names import TruthAnswer, known_answer, unknown_answer
+from scope_ptz.perception.ground_truth.answers.unread_texts import illegibility, is_only_too_small
 from scope_ptz.perception.ground_truth.thing_search import find, split_after_noun
 from scope_ptz.perception.ground_truth.view import View
 from scope_ptz.perception.ground_truth.vocabulary import FILLER_WORDS
@@ -36,6 +37,12 @@ class _ThingTexts:
     def legible(self) -> list[str]:
         """The legible texts."""
         return list(dict.fromkeys(t.text.text for t in self.texts if t.legible))
+
+    @property
+    def rows(self) -> list[str]:
+        """The rows of the legible texts, from top to bottom."""
+        legible = [t for t in self.texts if t.legible]
+        return [" ".join(row) for block in blocks_of(legible) for row in block.rows] if legible else []
 
     @property
     def legible_words(self) -> frozenset[str]:
@@ -100,7 +107,26 @@ def _prices_on(group: _ThingTexts, goods: Sequence[frozenset[str]]) -> list[tupl
     label = " ".join(line.lower() for line in group.legible if not _PRICE.search(line))
     if len(lines) == 1 and lines[0][0].strip() == lines[0][1]:
         return [(label, lines[0][1])]
-    return [("", price) for line, price in lines if any(words <= _words(line) for words in goods)]
+    entries = [(line, price) for line, price in lines if any(words <= _words(line) for words in goods)]
+    if not entries:
+        entries = [(text, price) for text, price in _labelled_prices(group.rows) if any(words <= _words(text) for words in goods)]
+    return [("", price) for _, price in entries]
+
+
+def _labelled_prices(rows: Sequence[str]) -> Iterator[tuple[str, str]]:
+    """Yield the text and the price of each entry of a price list. A row without a price is the beginning of the next entry.
+
+    A list that begins with a bare price has its prices above the goods, or is cut off, so it has no entries.
+    """
+    if rows and _PRICE.fullmatch(rows[0].strip()):
+        return
+    beginning = ""
+    for row in rows:
+        if prices := _PRICE.findall(row):
+            yield f"{beginning} {row}", prices[0]
+            beginning = ""
+        else:
+            beginning = f"{beginning} {row}"
 
 
 def answer_time(view: View, question: tree.Time) -> TruthAnswer:

@@ -10,6 +10,7 @@ from scope_ptz.english.grammar.lexicon import nouns_in, singular_phrase
 from scope_ptz.english.grammar.parts_of_speech import parts_of_speech
 from scope_ptz.english.grammar.questions import question_tree as tree
 from scope_ptz.english.grammar.questions.ambiguity import is_person
+from scope_ptz.perception.ground_truth.answers.clock_times import answer_clock_time
 from scope_ptz.perception.ground_truth.answers.legible_text import answer_from_signs
 from scope_ptz.perception.ground_truth.answers.restating import (
     definite_as_asked,
@@ -47,6 +48,8 @@ UNANSWERABLE_SUBJECTS = frozenset(
     "it time day weather date temperature mood today season month year hour brand owner price name age".split()  # noqa: SIM905
 )
 """Subjects about which a picture contains no information."""
+WRITTEN_FACTS = frozenset({"limit", "hours"})
+"""Facts that are written on signs, and whose names also mean the signs: "the speed limit", "the opening hours"."""
 _ACTIVITY_WORDS = frozenset(["doing", "activity", "action", "up"])
 # Groups of words that ask for the same fact.
 _KEY_SYNONYMS = {
@@ -61,7 +64,8 @@ _KEY_SYNONYMS = {
 
 def answer_attribute(view: View, question: tree.Ask) -> TruthAnswer:
     """Answer with the value of an attribute for one or more things."""
-    if question.what is None:
+    is_clock_time = question.attribute == ("time",) and question.what == tree.Description((tree.Phrase(("it",)),))
+    if question.what is None or is_clock_time:
         return answer_fact_in_view(view, question.attribute)
     matches = find(view, question.what)
     if not matches:
@@ -285,6 +289,8 @@ def _part_value(thing: Thing, words: Sequence[str]) -> str | None:
 
 def answer_fact_in_view(view: View, attribute: Sequence[str]) -> TruthAnswer:
     """Answer with a fact about a thing in view ("which lane is closed?"), or the text on a sign ("what is the speed limit?")."""
+    if tuple(attribute) == ("time",) and (clocks := [t for t in view.things if "clock" in t.concepts]):
+        return answer_clock_time(clocks)
     if tuple(attribute) == ("thing",) or set(attribute) & UNANSWERABLE_SUBJECTS:
         return unknown_answer("I cannot tell that from the picture")
     stated = [(t, v) for t in view.things for v in [value_of(t, attribute)] if v is not None and _fact_contains(t, attribute)]

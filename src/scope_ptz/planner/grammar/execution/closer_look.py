@@ -4,15 +4,20 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
+from scope_ptz import english
+from scope_ptz.english.grammar.closer_views import CloserViews, closer_views_in
 from scope_ptz.english.grammar.questions.positions import without_position
 from scope_ptz.english.grammar.questions.question_parser import parse_question
+from scope_ptz.english.grammar.questions.question_tree import Read
 from scope_ptz.planner.grammar.execution import answer_sentences as phrases
 from scope_ptz.planner.grammar.execution.move_arguments import return_arguments
 from scope_ptz.planner.grammar.execution.run_state import CallGenerator, Offer, RunState
 
 if TYPE_CHECKING:
+    from scope_ptz.geometry import Pose
     from scope_ptz.tools.arguments import View
 
 _TOO_SMALL = re.compile(
@@ -59,33 +64,35 @@ class CloserLook(RunState):
             if result is not None:
                 return result
         result = yield from self._perception_call("query_answer", question=plain, view=view)
-        if result is None or view != "current" or self.moves_are_forbidden or not is_too_small(result):
+        if result is None or view != "current" or self.moves_are_forbidden:
             return result
-        if largest := _object_with_largest_text(result):
-            thing, named = largest, f"What does the {largest} say?"
-            question = named if parse_question(named) is not None else question
+        answer, closer = closer_views_in(result["answer"])
+        if closer is not None and isinstance(parse_question(question), Read):
+            if self.may_go_closer:
+                return (yield from self._from_several_close_ups({**result, "answer": answer}, closer))
+            if not result.get("known", True):
+                self.offers.append(Offer(closer.things[0], reading_question(closer.things[0]), self.pose))
+            return result
+        if not is_too_small(result):
+            return result
         thing = thing or _object_with_text(result) or thing_of(question)
         if not thing:
             return result
         if not self.may_go_closer:
             self.offers.append(Offer(thing, question, self.pose))
             return result
-        return (yield from self._from_close_up(question, thing, result, of_several=bool(largest)))
+        return (yield from self._from_close_up(question, thing, result))
 
     def _can_zoom_in(self) -> bool:
         """Return whether the lens has room for a closer view."""
         return self.pose is not None and self.pose.zoom < self.limits.max_zoom - 0.01
 
-    def _from_close_up(
-        self, question: str, thing: str, before: dict[str, Any] | None, *, of_several: bool = False
-    ) -> CallGenerator:
+    def _from_close_up(self, question: str, thing: str, before: dict[str, Any] | None) -> CallGenerator:
         """Zoom in on a thing, ask a question about it, and put the camera back. Return the result, or ``before`` if there is none.
 
-        If a part cannot be found ("licence plate of the van"), the camera zooms in on the whole.
-        With ``of_several``, the user wants to have several things read, and the thing is the one with the largest text.
-        """
+        If a part cannot be found ("licence plate of the van"), the camera zooms in on the whole."""
         start, found = self.pose, False
-        for target in dict.fromkeys((thing, _whole_of(thing))):
+        for target in dict.fromkeys((thing, whole_of(thing))):
             thing = target
             zoomed = yield from self._perception_call("zoom_to_object", description=thing)
             found = zoomed is not None and bool(zoomed.get("found"))
@@ -94,13 +101,7 @@ class CloserLook(RunState):
         if not found:
             return before
         question = without_position(question)  # what was at the bottom is now in the middle
-        result = yield from self._perception_call("query_answer", question=question, view="current")
-        if result is not None and is_too_small(result) and self._can_zoom_in():
-            text = "number plate of" if _ASKS_FOR_PLATE.search(question) else "text on"
-            whole = without_position(_whole_of(thing) if "plate" in text else thing)
-            zoomed = yield from self._perception_call("zoom_to_object", description=f"{text} the {whole}")
-            if zoomed is not None and zoomed.get("found"):
-                result = yield from self._perception_call("query_answer", question=question, view="current")
+        result = yield from self._answer_from_here(question, thing)
         if result is None or not result.get("known", True):
             extent = "" if self._can_zoom_in() else " as far as I can"
             self._note(f"I zoomed in on the {thing}{extent}, but that did not help, so I put the camera back")
@@ -108,15 +109,74 @@ class CloserLook(RunState):
             chosen = phrases.chosen_text(thing, matches, zoomed.get("chosen", ""))
             others = "other one" if matches == 2 else f"other {matches - 1}"
             self._note(f"I zoomed in on {chosen}, and put the camera back afterwards; I did not go closer to the {others}")
-        elif of_several:
-            self._note(f"I zoomed in on the {thing} only, which has the largest text, and put the camera back afterwards")
         else:
             self._note(f"I zoomed in on the {thing} to answer that, and put the camera back afterwards")
+        yield from self._put_back(start)
+        return before if result is None else result
+
+    def _answer_from_here(self, question: str, thing: str) -> CallGenerator:
+        """Ask a question about a thing on which the camera has zoomed in. If its text is still too small, zoom in on the text."""
+        result = yield from self._perception_call("query_answer", question=question, view="current")
+        if result is not None and is_too_small(result) and self._can_zoom_in():
+            text = "number plate of" if _ASKS_FOR_PLATE.search(question) else "text on"
+            whole = without_position(whole_of(thing) if "plate" in text else thing)
+            zoomed = yield from self._perception_call("zoom_to_object", description=f"{text} the {whole}")
+            if zoomed is not None and zoomed.get("found"):
+                result = yield from self._perception_call("query_answer", question=question, view="current")
+        return result
+
+    def _put_back(self, start: Pose) -> CallGenerator:
+        """Move the camera back to the pose before a closer look."""
         if self.assume_met:
             self.pose = start  # a plan cannot know how far the camera zooms in, so it cannot compute the move back
         elif arguments := return_arguments(start, self.pose, self.limits):
             yield from self._camera_call("adjust_ptz", **arguments)
-        return before if result is None else result
+
+    def _from_several_close_ups(self, before: dict[str, Any], closer: CloserViews) -> CallGenerator:
+        """Zoom in on several things one after the other, read each, and put the camera back.
+
+        Return the result ``before``, with what was read from close up.
+        """
+        start, seen, answers = self.pose, list[str](), list[dict[str, Any]]()
+        for thing in closer.things:
+            zoomed = yield from self._perception_call("zoom_to_object", description=thing)
+            if zoomed is None or not zoomed.get("found"):
+                continue
+            question = reading_question(without_position(thing))
+            if parse_question(question) is None:
+                question = reading_question(thing.split()[-1])  # perception does not know all words of the name
+            reply = yield from self._answer_from_here(question, thing)
+            yield from self._put_back(start)
+            if reply is not None:
+                seen.append(thing if thing.split()[-1].isdigit() else f"the {thing}")  # "dock number 8"
+                text = closer_views_in(reply["answer"])[0]
+                text = re.sub(re.escape(thing), thing.replace("\\", r"\\"), text, count=1, flags=re.IGNORECASE)  # "the CCTV sign"
+                answers.append({**reply, "answer": text[:1].upper() + text[1:]})
+        if not seen:
+            return before
+        zoomed_in = f"I zoomed in on {english.listing(seen)}"
+        if not any(reply.get("known", True) for reply in answers):
+            text = f"{zoomed_in}, but that did not help, so I put the camera back. {before['answer']}"
+            return {**before, "answer": text}
+        skipped = f"; I did not go closer to the other {closer.more}" if closer.more else ""
+        report = f"{zoomed_in}, and put the camera back afterwards{skipped}."
+        beginning = f"{before['answer']} {report}" if before.get("known", True) else report
+        return {**before, "known": True, "answer": _joined([beginning, *(reply["answer"] for reply in answers)])}
+
+
+def reading_question(thing: str) -> str:
+    """Return the question that asks perception for the text on an object."""
+    head = phrases.head_and_rest(thing)[0].partition(" for ")[0]  # "price card for carrots" is singular
+    plural = phrases.noun(head, 1) != head
+    return f"What {'do' if plural else 'does'} the {thing} say?"
+
+
+def _joined(sentences: Sequence[str]) -> str:
+    """Join sentences. What follows a list with a line for each row begins on a new line."""
+    text = ""
+    for sentence in sentences:
+        text += ("\n" if "\n" in text.rpartition(". ")[2] else " ") + sentence
+    return text.strip()
 
 
 _ASKS_FOR_PLATE = re.compile(r"\b(?:plate|registration)\b", re.IGNORECASE)
@@ -131,19 +191,10 @@ def _object_with_text(result: dict[str, Any]) -> str:
     return match[1] if match else ""
 
 
-_OBJECT_WITH_TEXT = re.compile(r"^The .+ (?:is|may be) on the (.+), but it is too small to read")
+_OBJECT_WITH_TEXT = re.compile(r"^The .+ (?:is|are|may be) on the (.+), but it is too small to read")
 
 
-def _object_with_largest_text(result: dict[str, Any]) -> str:
-    """Return the object of several that has the largest text, according to an answer; empty if the answer names none."""
-    match = _OBJECT_WITH_LARGEST_TEXT.search(str(result.get("answer", "")))
-    return match[1] if match else ""
-
-
-_OBJECT_WITH_LARGEST_TEXT = re.compile(r"; the largest that faces the camera is on the (.+?)\.?$")
-
-
-def _whole_of(thing: str) -> str:
+def whole_of(thing: str) -> str:
     """Return the whole of a part: "van" for "licence plate of the van". Return other things unchanged."""
     match = re.search(r" (?:of|on) (?:the|that|this|an?) (.+)", thing, re.IGNORECASE)
     return match[1] if match else thing

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from scope_ptz.planner.grammar import instruction_tree as ast
 from scope_ptz.planner.grammar.execution import answer_sentences as phrases
-from scope_ptz.planner.grammar.execution.closer_look import CloserLook
+from scope_ptz.planner.grammar.execution.closer_look import CloserLook, reading_question
 from scope_ptz.planner.grammar.execution.run_state import CallGenerator, HaltedError
 
 if TYPE_CHECKING:
@@ -80,9 +80,3 @@ class ConditionEvaluation(CloserLook):
     def _visible_count(self, description: str, view: View | None) -> CallGenerator:
         result = yield from self._required_perception_call("count_objects", description=description, view=view or "current")
         return int(result["count"])
-
-
-def reading_question(thing: str) -> str:
-    """Return the question that asks perception for the text on an object."""
-    plural = phrases.noun(thing, 1) != thing
-    return f"What {'do' if plural else 'does'} the {thing} say?"

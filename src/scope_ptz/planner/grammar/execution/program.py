@@ -20,9 +20,8 @@ from scope_ptz.planner.grammar.execution import answer_sentences as phrases
 from scope_ptz.planner.grammar.execution import move_sentences as motion
 from scope_ptz.planner.grammar.execution.camera_history import VisitedPosition, is_same_pose
 from scope_ptz.planner.grammar.execution.close_ups import CloseUpSteps
-from scope_ptz.planner.grammar.execution.closer_look import is_too_small
+from scope_ptz.planner.grammar.execution.closer_look import is_too_small, reading_question, whole_of
 from scope_ptz.planner.grammar.execution.comparisons import ComparisonSteps, stops_of_tour
-from scope_ptz.planner.grammar.execution.condition_evaluation import reading_question
 from scope_ptz.planner.grammar.execution.move_arguments import arguments_of, return_arguments, unlimited_pose_after
 from scope_ptz.planner.grammar.execution.returns import ReturnSteps
 from scope_ptz.planner.grammar.execution.run_state import CallGenerator, HaltedError, Offer
@@ -212,6 +211,9 @@ class Program(CloseUpSteps, ReturnSteps, ComparisonSteps):
             self._note(phrases.reason_and_reaction(reason, "did neither" if met is None and step.otherwise else "left it at that"))
 
     def _loop(self, step: ast.Loop) -> CallGenerator:
+        if isinstance(step.until, ast.Readable) and step.bound is None and all(map(_zooms_in, step.body)):
+            yield from self._zoom_in_to_read(step, step.until.thing)
+            return
         limit, moves, best = self._move_limit(step), 0, -1
         last: dict[str, Any] = {}
         while True:
@@ -240,6 +242,30 @@ class Program(CloseUpSteps, ReturnSteps, ComparisonSteps):
                 return
         yield from self._end_unmet_loop(step, best, f", and stopped after {motion.moves_text(last, moves)}")
 
+    def _zoom_in_to_read(self, step: ast.Loop, thing: ast.Thing) -> CallGenerator:
+        """Zoom in on a thing until its text can be read. If it cannot be read from close up either, put the camera back."""
+        start, has_moved, whole = self.pose, False, whole_of(thing.text)
+        met, reason = yield from self._test(step.until)
+        targets = (thing.text, f"text on the {thing.text}") if whole == thing.text else (thing.text, whole, thing.text)
+        for target in targets:
+            if met or not is_too_small({"answer": reason, "known": False}) or not self._can_zoom_in():
+                break
+            zoomed = yield from self._perception_call("zoom_to_object", description=target)
+            if zoomed is not None and zoomed.get("found"):
+                has_moved = self._moved_to_object = True
+                met, reason = yield from self._test(step.until)
+        if met:
+            self._note(f"I zoomed in on {_the(thing)}" if has_moved else "")
+            self._note(reason)
+            return
+        if has_moved:
+            self._note(f"I zoomed in on {_the(thing)}, but that did not help, so I put the camera back")
+            yield from self._put_back(start)
+        if not step.otherwise:
+            raise HaltedError(reason)
+        self._note(reason)
+        yield from self._run_steps(step.otherwise)
+
     def _end_unmet_loop(self, step: ast.Loop, best: int, ending: str) -> CallGenerator:
         """End a loop whose condition was never met: run the alternative steps, or stop the run if there are none."""
         reason = f"I never {phrases.condition_text(step.until)}{_highest_count_text(best)}{ending}"
@@ -260,6 +286,13 @@ class Program(CloseUpSteps, ReturnSteps, ComparisonSteps):
             return max(1, int(bound.degrees / (pan or tilt) + 1e-6))
         full_range_moves = math.ceil(358 / pan) if pan else math.ceil(90 / tilt) if tilt else _DEFAULT_MAX_MOVES
         return max(1, min(full_range_moves, _DEFAULT_MAX_MOVES))
+
+
+def _zooms_in(step: ast.Step) -> bool:
+    """Return whether a step does nothing but zoom in."""
+    return isinstance(step, ast.Move) and all(
+        isinstance(part, ast.Zoom) and (part.kind == "in" or (part.kind == "factor" and part.value > 1)) for part in step.parts
+    )
 
 
 def _is_in_wrong_direction(aim: ast.Aim, pose: Pose) -> bool:

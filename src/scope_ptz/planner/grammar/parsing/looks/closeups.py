@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from scope_ptz.english import listing
+from scope_ptz.planner.grammar.execution.answer_sentences import noun
 from scope_ptz.planner.grammar.instruction_tree import (
     Ask,
     Read,
@@ -34,7 +36,7 @@ def read_step(source: Source, lexemes: Sequence[Lexeme], view: View | None) -> S
     match = full_match(
         (
             rf"{SKIP} (READ|READ-ING|DESCRIBE READ|TELL READ|try READ|see if SELF can READ) {ME} (out|off|aloud|to "
-            rf"me|back)? (?P<thing>_+?) (out_loud|out|loud|aloud|to me|to us|for me|off|again|back)* {SKIP}"
+            rf"me|back)? (?P<thing>_+?) (out_loud|out|loud|aloud|to me|to us|for me|off|again|back|INTURN|separately)* {SKIP}"
         ),
         lexemes,
     )
@@ -60,6 +62,8 @@ def read_step(source: Source, lexemes: Sequence[Lexeme], view: View | None) -> S
     things = things_of(source, words) or things_of(source, match["thing"])  # "nearest sign" is a noun phrase only with its article
     if things is None:
         return None
+    if match["thing"][0].has("EVERY", "all", "each") and len(things) == 1 and things[0].text:
+        things = (replace(things[0], text=noun(things[0].text, 2)),)  # "every sign" are all signs
     return Read(things[0], view) if len(things) == 1 else tuple(Read(thing, view) for thing in things)
 
 
