@@ -15,7 +15,8 @@ from scope_ptz.planner.grammar.binding.followups import followup_of, question_ab
 from scope_ptz.planner.grammar.binding.names import UnresolvedError
 from scope_ptz.planner.grammar.binding.offtopic import REFUSAL, is_harmful
 from scope_ptz.planner.grammar.binding.resolver import Resolver
-from scope_ptz.planner.grammar.binding.small_talk import reply_to_small_talk
+from scope_ptz.planner.grammar.binding.small_talk import question_about_rejection, reply_to_small_talk
+from scope_ptz.planner.grammar.binding.unknowable import why_unknowable
 from scope_ptz.planner.grammar.consistency.check import (
     not_understood,
     objection,
@@ -67,6 +68,8 @@ def understand(instruction: str, presets: Sequence[str] | None, conversation: Se
         return Understanding(refusal=REFUSAL)
     if reply := reply_to_small_talk(instruction):
         return Understanding((ast.Reply(reply),))
+    if reason := why_unknowable(instruction):
+        return Understanding(clarification=reason)
     preset_names = None if presets is None else tuple(presets)
     if _NO.fullmatch(instruction.strip()):
         return Understanding(clarification=NOTHING_DONE)
@@ -77,6 +80,8 @@ def understand(instruction: str, presets: Sequence[str] | None, conversation: Se
     understanding = _read(said, preset_names, conversation)
     if understanding.steps:
         return Understanding((ast.Instead(understanding.steps),)) if continuation.corrects else understanding
+    if question := question_about_rejection(instruction):
+        return Understanding(clarification=question)
     if continuation.corrects:
         return understanding
     versions = (_read(shorter, preset_names, conversation) for shorter in shorter_versions(written_out(said), preset_names or ()))

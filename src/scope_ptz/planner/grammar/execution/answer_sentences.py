@@ -192,6 +192,14 @@ def not_understood_text(error: str) -> str:
     return f'I did not understand "{match["text"] or words}"'
 
 
+def reports_absence(answer: str) -> bool:
+    """Return whether an answer reports that what a question is about is not in view: "There are no docks in view"."""
+    return _ABSENT.match(answer) is not None
+
+
+_ABSENT = re.compile(r"There (?:is|are) no\b|I (?:can see|see) no\b", re.IGNORECASE)
+
+
 def object_pronoun(description: str) -> str:
     """Return the pronoun for one thing as an object: "it", or "them" for a person, whose sex may be unknown."""
     head, _ = head_and_rest(description)

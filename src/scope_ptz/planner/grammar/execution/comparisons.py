@@ -88,7 +88,7 @@ class ComparisonSteps(ConditionEvaluation):
 
     # Comparisons -------------------------------------------------------------------------------------------------------
     def _compare(self, step: ast.Compare) -> CallGenerator:
-        parts = tuple(ast.Tally(thing, view=step.view) for thing in (step.first, step.second))
+        parts = (ast.Tally(step.first, view=step.view), ast.Tally(step.second, step.second_place, step.view))
         first, second = yield from self._tallies(parts)
         met = first > second if step.comparison == "more" else first < second
         self._last_was_yes = met

@@ -167,7 +167,13 @@ class Program(ReturnSteps, ComparisonSteps):
             self._note(f"I can see {english.listing(counted)}{phrases.where(view, [thing.text for thing in step.things])}")
 
     def _ask(self, step: ast.Ask, thing: str = "") -> CallGenerator:
+        noted = len(self.notes)
         result = yield from self._answer_to(step.question, step.view or "current", thing)
+        is_here = result is not None and result.get("known", True) and not phrases.reports_absence(str(result["answer"]))
+        if step.otherwise_at is not None and not is_here:
+            del self.notes[noted:]
+            yield from self._gotopreset(ast.GoToPreset(step.otherwise_at))
+            result = yield from self._answer_to(step.question, "current", thing)
         self._state_answer(result)
 
     def _state_answer(self, result: dict[str, Any] | None) -> None:

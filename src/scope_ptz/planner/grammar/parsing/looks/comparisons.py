@@ -20,6 +20,7 @@ from scope_ptz.planner.grammar.instruction_tree import (
     WhichPreset,
 )
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
+from scope_ptz.planner.grammar.parsing.looks.here_and_there import comparison_with_preset
 from scope_ptz.planner.grammar.parsing.looks.preset_presence import preset_presence_step
 from scope_ptz.planner.grammar.parsing.looks.rankings import ranking_step
 from scope_ptz.planner.grammar.parsing.parts.clause import NotUnderstoodError, Source, text_of, trimmed
@@ -83,6 +84,7 @@ def comparison_step(source: Source, lexemes: Sequence[Lexeme], read_moves: ReadM
         lexemes = tuple(asked["asked"])  # "which is it, more girls or more boys?", "fewer cars than vans, or not?"
     return (
         _same_thing_at_two_presets(source, lexemes)
+        or comparison_with_preset(source, lexemes)
         or ranking_step(source, lexemes)
         or _preset_comparison(source, lexemes)
         or _before_after(source, lexemes, read_moves)

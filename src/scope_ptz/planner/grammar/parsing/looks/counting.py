@@ -159,7 +159,7 @@ def _counted(
         things = things_of(source, match["thing"])
         if things:
             return Count(things, view)
-    if how is not None and (places := places_of(source, rest)):
+    if how is not None and rest[0].has("PREP") and (places := places_of(source, rest)):
         return AtPlaces(places, (Count((Thing("people"),), view),))  # "how many on the boardwalk?"
     if how is not None and match_start("(in|on|at) DET FREE", rest):
         return Count((Thing(f"people {text_of(source, rest)}"),), view)  # "how many in the queue?"
