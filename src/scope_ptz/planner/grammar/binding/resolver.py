@@ -38,6 +38,7 @@ from scope_ptz.planner.grammar.binding.question_text import (
     with_subject,
 )
 from scope_ptz.planner.grammar.binding.unknowable import why_not_about_the_scene
+from scope_ptz.planner.grammar.binding.whereabouts import report_of_last_following, thing_that_went
 from scope_ptz.planner.grammar.execution.answer_sentences import noun
 
 _THE_THING_AND_IT = re.compile(r"\bthe \w+.*\b(it|they|them)\b")
@@ -217,6 +218,10 @@ class Resolver(FollowUpSteps):
             return self._count(ast.Count((ast.Thing(pronoun="them", predicate=predicate),), step.view))
         if comparison := bare_comparison(step.question):
             return self._bind(self._earlier_comparison(comparison))
+        if went := thing_that_went(step.question):
+            if report := report_of_last_following(went, self.conversation):
+                return [ast.Reply(report)]
+            step = replace(step, question=f"where is {went}?")
         if is_request_to_describe(step.question):
             return [ast.Ask("Describe the scene.", self._view(step.view))]
         if not is_about_the_scene(f"{step.question} {self.topic if 'time' in step.question else ''}"):

@@ -56,7 +56,7 @@ class Program(ReturnSteps, ComparisonSteps):
         return next((offer for offer in self.offers if offer.pose == self.pose), None)
 
     def _run_steps(self, steps: Sequence[ast.Step]) -> CallGenerator:
-        i = 0
+        steps, i = _with_counts_joined(steps), 0
         while i < len(steps):
             if len(stops := stops_of_tour(steps[i:])) > 1:
                 yield from self._tour(stops)
@@ -142,6 +142,7 @@ class Program(ReturnSteps, ComparisonSteps):
         text = step.thing.text
         if text in self._not_found:
             return
+        start = self.pose
         result = yield from self._perception_call("track_object", description=text, duration_s=_whole_as_int(step.seconds))
         if result is None:
             return
@@ -153,18 +154,20 @@ class Program(ReturnSteps, ComparisonSteps):
         self._moved_to_object = True
         followed = "person" if text.lower() in _SOMEONE else phrases.noun(text, 1)
         seconds = phrases.number(result.get("duration_s", step.seconds))
-        time = motion.share_of_time(result.get("held_share", 0.0))
-        self._note(f"I followed the {followed} for {seconds} seconds and had {phrases.object_pronoun(followed)} in view {time}")
+        pronoun = phrases.object_pronoun(followed)
+        time = motion.time_in_view(result.get("held_share", 0.0), result.get("duration_s", step.seconds))
+        zoom = f". I zoomed {zoomed}" if (zoomed := motion.zoom_text(start.zoom, self.pose.zoom)) else ""
+        self._note(f"I followed the {followed} for {seconds} seconds and had {pronoun} in view {time}{zoom}")
 
     def _count(self, step: ast.Count) -> CallGenerator:
-        view, counted = step.view or "current", list[str]()
+        view, counts = step.view or "current", list[tuple[str, int, bool]]()
         for thing in step.things:
             result = yield from self._perception_call("count_objects", description=thing.text, view=view)
             self._last_was_yes = result["count"] > 0 if result is not None else None
             if result is not None:
-                counted.append(phrases.counted(thing.text, result["count"], complete=result.get("complete", True)))
-        if counted:
-            self._note(f"I can see {english.listing(counted)}{phrases.where(view, [thing.text for thing in step.things])}")
+                counts.append((thing.text, result["count"], result.get("complete", True)))
+        if counts:
+            self._note(f"I can see {phrases.all_counted(counts)}{phrases.where(view, [thing.text for thing in step.things])}")
 
     def _ask(self, step: ast.Ask, thing: str = "") -> CallGenerator:
         noted = len(self.notes)
@@ -277,6 +280,18 @@ class Program(ReturnSteps, ComparisonSteps):
             return max(1, int(bound.degrees / (pan or tilt) + 1e-6))
         full_range_moves = math.ceil(358 / pan) if pan else math.ceil(90 / tilt) if tilt else _DEFAULT_MAX_MOVES
         return max(1, min(full_range_moves, _DEFAULT_MAX_MOVES))
+
+
+def _with_counts_joined(steps: Sequence[ast.Step]) -> list[ast.Step]:
+    """Return steps in which neighbouring counts in the same view are one step, which is reported in one sentence."""
+    joined: list[ast.Step] = []
+    for step in steps:
+        last = joined[-1] if joined else None
+        if isinstance(step, ast.Count) and isinstance(last, ast.Count) and last.view == step.view:
+            joined[-1] = ast.Count((*last.things, *step.things), step.view)
+        else:
+            joined.append(step)
+    return joined
 
 
 def _is_in_wrong_direction(aim: ast.Aim, pose: Pose) -> bool:
