@@ -7,6 +7,7 @@ import pytest
 from scope_ptz.geometry import Pose
 from scope_ptz.planner.base import Briefing, Finish, State
 from scope_ptz.planner.grammar import decide
+from scope_ptz.planner.grammar.answerable import answerable_questions
 from scope_ptz.planner.plan import plan
 from tests.planner.stage import LIMITS, PRESETS, Stage
 
@@ -150,3 +151,15 @@ def test_a_question_that_is_not_understood_gets_an_example_about_the_same_thing(
     reply = stage.run("is the bus of a sort to go with?").text
     assert reply.startswith("I did not understand that question. ")
     assert reply.endswith('for example: "how many buses are there?" or "where is the bus?".')
+
+
+@pytest.mark.parametrize(
+    ("question", "example"),
+    [
+        ("is the worker of a sort to go with?", "what is the worker doing?"),
+        ("is the timetable of a sort to go with?", "what does the timetable say?"),
+        ("is it of a sort to go with?", "what does the sign say?"),
+    ],
+)
+def test_the_examples_suit_the_kind_of_thing(question: str, example: str) -> None:
+    assert answerable_questions(question).endswith(f'or "{example}".')

@@ -188,6 +188,11 @@ _NOT_UNDERSTOOD = re.compile(
 _CANNOT_TELL = re.compile(r"I cannot tell\b[^.]*")
 
 
+def is_not_understood(error: str) -> bool:
+    """Return whether an error reports that perception did not understand a question or a description."""
+    return _NOT_UNDERSTOOD.match(error) is not None
+
+
 def not_understood_text(error: str) -> str:
     """Return the note that perception did not understand a question or a description, or knows nothing about a place.
 
