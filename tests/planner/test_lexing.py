@@ -57,14 +57,14 @@ def test_words_are_not_turned_into_others(word: str) -> None:
         ("exavator", "excavator"),
         ("exavators", "excavators"),
         ("bicyle", "bicycle"),
-        ("pedestriam", "pedestrian"),
         ("umbrela", "umbrella"),
         ("trafic", "traffic"),
-        ("Hartley", "Hartley"),
+        ("shunter", "shunter"),
+        ("skelter", "skelter"),
         ("harrow", "harrow"),
     ],
 )
-def test_a_misspelt_thing_is_the_only_known_one_within_one_edit(typed: str, meant: str) -> None:
+def test_a_misspelt_thing_is_the_only_known_one_within_a_slip(typed: str, meant: str) -> None:
     assert corrected_noun(typed) == meant
 
 

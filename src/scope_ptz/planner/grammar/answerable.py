@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from scope_ptz import english
 from scope_ptz.english.grammar.lexicon import lexicon
 from scope_ptz.planner.grammar.lexing.lexer import lexemes_of
+from scope_ptz.planner.grammar.parsing.parts.patterns import match_start
 
 _MIN_SHARE = 0.7
 """Minimum share of the words of an instruction that a quotation must contain to name nothing in particular."""
@@ -23,6 +24,8 @@ def is_whole_question(text: str, quotations: Sequence[str]) -> bool:
 
 def _is_question(text: str) -> bool:
     lexemes = [x for x in lexemes_of(text) if not x.has("FILLER", "COMMA")]
+    if match_start("do not|NEGATED", lexemes):
+        return False  # "don't follow anyone"
     return bool(lexemes) and (lexemes[-1].has("QUESTION") or lexemes[0].has("WHQ", "HOWMANY", "BE", "DOV", "HAVEV"))
 
 

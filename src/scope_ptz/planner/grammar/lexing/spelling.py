@@ -55,20 +55,25 @@ def with_whole_ending(word: str) -> str:
 def corrected_noun(word: str) -> str:
     """Return the word that a misspelt noun or adjective stands for.
 
-    It is the only noun for a kind of thing that perception knows within one edit ("exavator"), or the only English noun or
-    adjective that results from swapping two adjacent letters or doubling one. Known words, and words that could be corrected in
-    more than one way, are returned unchanged.
+    It is the only noun for a kind of thing that perception knows with a letter more or less, or with two letters swapped
+    ("exavator"), or the only English noun or adjective that results from swapping two adjacent letters or doubling one. Known
+    words, and words that could be corrected in more than one way, are returned unchanged.
     """
     if is_english(word) or parts_of_speech(word) or verb_form(word) is not None:
         return word
     if len(word) >= _MIN_NOUN_CHARS:
-        things = {noun for noun in _nouns_for_things() if noun[0] == word[0] and within_one_edit(word, noun)}
+        things = {noun for noun in _nouns_for_things() if noun[0] == word[0] and _differs_by_a_slip(word, noun)}
         if len({singular(noun) for noun in things}) == 1:
             return max(things, key=lambda noun: (noun.endswith("s") == word.endswith("s"), noun))
     swapped = {word[:i] + word[i + 1] + word[i] + word[i + 2 :] for i in range(1, len(word) - 1)}
     doubled = {word[:i] + word[i] + word[i:] for i in range(1, len(word))}
     meant = {other for other in swapped | doubled if parts_of_speech(other) & {"NOUN", "ADJ"}}
     return meant.pop() if len(meant) == 1 else word
+
+
+def _differs_by_a_slip(word: str, noun: str) -> bool:
+    """Return whether a letter is missing, added or swapped. With another letter, it may be another word: "shunter", "shutter"."""
+    return within_one_edit(word, noun) and (len(word) != len(noun) or sorted(word) == sorted(noun))
 
 
 @lru_cache(maxsize=1)

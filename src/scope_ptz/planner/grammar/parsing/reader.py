@@ -155,6 +155,13 @@ class Reader:
             if (ahead := full_match(r"with (?P<what>_+)", body)) is not None:
                 body = ahead["what"]
             return (EachTime(self.read(body)),)
+        if told := full_match(
+            r"(?P<tell>TELL (SELF)*) at (EACHTIME|EVERY) (one|PRESETNOUN|of|PRON)* (COMMA)? (?P<what>(whether|IF|WHQ|HOWMANY) _+)",
+            lexemes,
+        ):
+            asked = self.read((*told["tell"], *told["what"]))  # "tell me at each whether it is open"
+            is_tour = any(x.has("PRESETNOUN") for x in lexemes[: len(lexemes) - len(told["what"])])
+            return (AtPlaces((), asked),) if is_tour else (EachTime(asked),)
         if match := full_match(r"(EACHTIME) (COMMA|FILLER)* (?P<body>_+)", lexemes):
             return (EachTime(self.read(match["body"])),)
         if match := full_match(

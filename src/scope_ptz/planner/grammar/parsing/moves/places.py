@@ -29,7 +29,8 @@ _GO = (
     r"AGAINWORD|DOACT)*"
 )
 _TAIL = (
-    r"(FILLER|on (DET)? VIEWNOUN|on|screen|up|now|please|VIEWNOUN|PRESETNOUN|again|first|next|instead|INSTEAD|AGAINWORD|SELF|"
+    r"(FILLER|on (DET)? (big|large|main)? (VIEWNOUN|screen)|on|screen|up|now|please|VIEWNOUN|"
+    r"PRESETNOUN|again|first|next|instead|INSTEAD|AGAINWORD|SELF|"
     r"FIRSTLY|VISIBLE|QUOTE|INTURN|over|COMMA (?=over)|CAMERA|ORDINAL|for|me|is|what|i|need|want|NOW)*"
 )
 _SUPERLATIVES = frozenset({"busiest", "quietest", "fullest", "emptiest", "most crowded", "least crowded", "calmest"})
