@@ -219,3 +219,8 @@ def test_a_way_back_with_an_amount_is_a_turn() -> None:
 def test_what_names_no_deed_is_asked_back(instruction: str) -> None:
     made = plan(instruction, PRESETS)
     assert not made.understood and not made.calls
+
+
+def test_the_whole_of_a_site_is_the_whole_scene() -> None:
+    (call,) = plan("quantity of light poles over the entire terminal, please", PRESETS).calls
+    assert call.arguments == {"description": "light poles", "view": "full"}
