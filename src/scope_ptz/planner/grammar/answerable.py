@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from scope_ptz import english
 from scope_ptz.english.grammar.lexicon import lexicon
 from scope_ptz.planner.grammar.lexing.lexer import lexemes_of
-from scope_ptz.planner.grammar.parsing.parts.patterns import match_start
 
 _MIN_SHARE = 0.7
 """Minimum share of the words of an instruction that a quotation must contain to name nothing in particular."""
@@ -24,7 +23,7 @@ def is_whole_question(text: str, quotations: Sequence[str]) -> bool:
 
 def _is_question(text: str) -> bool:
     lexemes = [x for x in lexemes_of(text) if not x.has("FILLER", "COMMA")]
-    if match_start("do not|NEGATED", lexemes):
+    if any(x.has("NEGATED") for x in lexemes[:2]):
         return False  # "don't follow anyone"
     return bool(lexemes) and (lexemes[-1].has("QUESTION") or lexemes[0].has("WHQ", "HOWMANY", "BE", "DOV", "HAVEV"))
 
