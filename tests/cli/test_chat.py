@@ -41,6 +41,12 @@ def test_a_turn_is_one_line_for_each_step_the_answer_and_the_run_folder(scope: S
     assert " · " in folder and "count-the-balls" in folder and not end
 
 
+def test_a_question_that_is_not_understood_is_explained_once(scope: Scope, monkeypatch: pytest.MonkeyPatch) -> None:
+    out = " ".join(chat(scope, monkeypatch, "is the ball of a sort to go with?").out.split())
+    assert "view=current: not understood Answer: I did not understand that question. I can answer, for example: " in out
+    assert out.count("understand") == 1
+
+
 def test_a_clarification_has_a_question_and_no_filmstrip(scope: Scope, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     result = chat(scope, monkeypatch, "florp the wibble")
     assert "Question: " in result.out

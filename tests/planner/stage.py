@@ -18,6 +18,7 @@ _START = Pose()
 class Stage:
     """``looks``: what counting, asking, zooming to and tracking give back, in order; the last one is repeated. ``fail``: tools
     that fail, with how often. ``lands``: the pose that zooming to a thing ends at; where the camera is, when not said.
+    ``after_tracking``: the same for following a thing, whose path then has these two poses.
     ``simulated``: whether the camera is simulated. ``places``: the viewpoint and pose of each preset; the first is home's. Without
     them, the camera has a single viewpoint, and presets and home are straight ahead."""
 
@@ -27,13 +28,14 @@ class Stage:
         fail: dict[str, int] | None = None,
         pose: Pose = _START,
         lands: Pose | None = None,
+        after_tracking: Pose | None = None,
         simulated: bool = False,
         places: dict[str, tuple[str, Pose]] | None = None,
     ) -> None:
         self.places = places or {}
         self.viewpoint = next((viewpoint for viewpoint, _ in self.places.values()), None)
         self.simulated = simulated
-        self.lands = lands
+        self.lands, self.after_tracking = lands, after_tracking
         self.looks = list(looks)
         self.fail = dict(fail or {})
         self.pose = pose
@@ -53,6 +55,7 @@ class Stage:
             self.fail[name] -= 1
             return None, f"{name} broke"
         clamped: tuple[str, ...] = ()
+        before = self.pose
         seen: dict[str, Any] = {"source": "ground-truth", "view": arguments.get("view", "current"), "frames": ()}
         extra: dict[str, Callable[[], dict[str, Any]]] = {
             "count_objects": lambda: {**seen, "description": arguments["description"], **self._count(), "boxes": ()},
@@ -71,7 +74,9 @@ class Stage:
                 "found": True,
                 "duration_s": arguments["duration_s"],
                 "held_share": 0.9,
-                "path": (),
+                "path": tuple(
+                    {"time_s": time_s, "pose": pose.as_dict(), "seen": True} for time_s, pose in enumerate((before, self.pose))
+                ),
             },
             "get_presets": lambda: {"presets": PRESETS},
             "take_image": lambda: {"file": f"image-{len(self.calls)}.png"},
@@ -82,6 +87,8 @@ class Stage:
             self.pose, clamped = LIMITS.clamp(wanted)
         elif name == "zoom_to_object" and self.lands:
             self.pose = self.lands
+        elif name == "track_object" and self.after_tracking:
+            self.pose = self.after_tracking
         elif name in {"go_home", "go_to_preset"}:
             self.viewpoint, self.pose = self.places.get(arguments.get("name", PRESETS[0]), (self.viewpoint, Pose()))
         result = {"message": "", "pose": self.pose.as_dict(), "clamped": clamped, **extra.get(name, dict)()}

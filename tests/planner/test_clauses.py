@@ -182,3 +182,45 @@ def test_words_around_a_command(text: str, calls: list[str]) -> None:
 )
 def test_counts_that_are_added_or_subtracted(text: str, step: type[ast.Step]) -> None:
     assert isinstance((parse(text, PRESETS).steps or (None,))[0], step)
+
+
+@pytest.mark.parametrize(
+    ("instruction", "expected"),
+    [
+        ("how many wet floor signs have we got out", [("count_objects", "wet floor signs")]),
+        ("how many empty trailers do we have standing here?", [("count_objects", "empty trailers")]),
+        ("how many people are there standing here?", [("count_objects", "people standing here")]),
+        ("can I have the yard up on the big screen?", [("go_to_preset", "yard")]),
+        ("yard nxt pls", [("go_to_preset", "yard")]),
+        ("zoom in on the van and please don't follow anyone who walks past it", [("zoom_to_object", "van")]),
+        (
+            "visit all the presets and tell me at each whether the ground is wet",
+            [call for preset in PRESETS for call in (("go_to_preset", preset), ("query_answer", "Is the ground wet?"))],
+        ),
+        (
+            "tell me at each preset how many people there are",
+            [call for preset in PRESETS for call in (("go_to_preset", preset), ("count_objects", "people"))],
+        ),
+        ("do the other lights work?", [("query_answer", "do the other lights work?")]),
+    ],
+)
+def test_everyday_wordings(instruction: str, expected: list[tuple[str, str]]) -> None:
+    calls = plan(instruction, PRESETS).calls
+    named = [next(a[key] for key in ("description", "question", "name") if key in a) for a in (call.arguments for call in calls)]
+    assert list(zip([call.name for call in calls], named, strict=True)) == expected
+
+
+def test_a_way_back_with_an_amount_is_a_turn() -> None:
+    (call,) = plan("come back to the right by eight degrees", PRESETS).calls
+    assert call.arguments == {"pan_deg": 8}
+
+
+@pytest.mark.parametrize("instruction", ["do the other thing with that one like usual", "don't follow anyone"])
+def test_what_names_no_deed_is_asked_back(instruction: str) -> None:
+    made = plan(instruction, PRESETS)
+    assert not made.understood and not made.calls
+
+
+def test_the_whole_of_a_site_is_the_whole_scene() -> None:
+    (call,) = plan("quantity of light poles over the entire terminal, please", PRESETS).calls
+    assert call.arguments == {"description": "light poles", "view": "full"}

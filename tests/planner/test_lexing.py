@@ -9,7 +9,7 @@ from scope_ptz.planner.grammar.lexing.lexer import lexemes_of
 from scope_ptz.planner.grammar.lexing.lexicon import phrases, spelling_lists
 from scope_ptz.planner.grammar.lexing.morphology import verb_forms
 from scope_ptz.planner.grammar.lexing.preset_names import preset_at
-from scope_ptz.planner.grammar.lexing.spelling import corrected_word
+from scope_ptz.planner.grammar.lexing.spelling import corrected_noun, corrected_word
 
 
 def words(text: str) -> list[str]:
@@ -49,6 +49,23 @@ def test_slips_of_the_keys_are_corrected(typed: str, meant: str) -> None:
 @pytest.mark.parametrize("word", ["pane", "tile", "lift", "snowing", "gates", "truck", "book", "flange", "heron", "kiosk", "van"])
 def test_words_are_not_turned_into_others(word: str) -> None:
     assert corrected_word(word) == word
+
+
+@pytest.mark.parametrize(
+    ("typed", "meant"),
+    [
+        ("exavator", "excavator"),
+        ("exavators", "excavators"),
+        ("bicyle", "bicycle"),
+        ("umbrela", "umbrella"),
+        ("trafic", "traffic"),
+        ("shunter", "shunter"),
+        ("skelter", "skelter"),
+        ("harrow", "harrow"),
+    ],
+)
+def test_a_misspelt_thing_is_the_only_known_one_within_a_slip(typed: str, meant: str) -> None:
+    assert corrected_noun(typed) == meant
 
 
 def test_no_word_of_the_spelling_lists_is_corrected() -> None:

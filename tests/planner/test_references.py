@@ -6,6 +6,7 @@ from typing import Any
 
 import pytest
 
+from scope_ptz.geometry import Pose
 from scope_ptz.planner.base import PastTurn
 from scope_ptz.planner.grammar.binding.asked_things import asked_thing, with_other_thing
 from scope_ptz.planner.grammar.binding.focus import Focus, which_one
@@ -369,3 +370,15 @@ def test_more_compares_the_two_presets_that_were_counted() -> None:
         ("go_to_preset", "gate"),
         ("go_to_preset", "highway"),
     ]
+
+
+@pytest.mark.parametrize("question", ["where did it go?", "where has the forklift gone?", "where did the forklift drive off to?"])
+def test_where_a_followed_thing_went(question: str) -> None:
+    stage = Stage([True], after_tracking=Pose(pan_deg=-12))
+    reply = stage.run(question, (stage.turn("follow the forklift"),)).text
+    assert reply == "The forklift went to the left: I turned 12 degrees to follow it, and had it in view to the end."
+
+
+def test_where_a_thing_went_that_was_not_followed() -> None:
+    assert last_turn("follow the forklift", "where did the van go?")[0] == [(ASK, "where is the van?")]
+    assert last_turn("is there a van?", "where did it go?")[0] == [(ASK, "where is the van?")]

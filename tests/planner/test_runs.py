@@ -6,7 +6,7 @@ import pytest
 
 from scope_ptz.geometry import Pose
 from scope_ptz.planner.grammar.execution.answer_sentences import chosen_text, counted
-from scope_ptz.planner.grammar.execution.move_sentences import move_text
+from scope_ptz.planner.grammar.execution.move_sentences import move_text, time_in_view
 from tests.planner.stage import Stage
 
 
@@ -219,12 +219,37 @@ def test_a_part_of_a_move_that_rounds_to_nothing_is_not_mentioned(arguments: dic
 
 def test_a_thing_that_was_chosen_from_several_is_named() -> None:
     assert Stage([20]).run("zoom in on the sign").text.startswith("I zoomed in on one of the 20 signs in view.")
+    assert chosen_text("two skips", 2, "blue skip") == "one of the 2 skips in view, the blue skip"
     assert chosen_text("sign", 20, "The Plough sign") == "one of the 20 signs in view, the Plough sign"
 
 
 def test_a_followed_thing_is_one_thing() -> None:
     reply = Stage([True]).run("track the forklifts for 10 seconds").text
-    assert reply.startswith("I followed the forklift for 10 seconds and had it in view 90% of the time.")
+    assert reply.startswith("I followed the forklift for 10 seconds and had it in view nearly the whole time.")
+
+
+@pytest.mark.parametrize(
+    ("share", "time"),
+    [
+        (1.0, "the whole time"),
+        (0.93, "nearly the whole time"),
+        (0.36, "for about 4 seconds of that"),
+        (0.08, "for about 1 second of that"),
+    ],
+)
+def test_how_long_a_followed_thing_was_in_view(share: float, time: str) -> None:
+    assert time_in_view(share, 10) == time
+
+
+def test_a_zoom_that_nobody_asked_for_is_reported() -> None:
+    stage = Stage([True], after_tracking=Pose(zoom=2.7))
+    assert stage.run("follow the forklift").text.endswith("I zoomed in from 1x to 2.7x. (Source: the simulator's ground truth.)")
+
+
+def test_neighbouring_counts_are_reported_in_one_sentence() -> None:
+    reply = Stage([1, 7]).run("go to the gate. how many vans are there? and how many cars are there?").text
+    assert reply.startswith("I went to preset gate. I can see 1 van and 7 cars in this view.")
+    assert Stage([0]).run("how many vans and cars are there?").text.startswith("I can see no vans or cars in this view.")
 
 
 def test_the_report_of_a_long_tour_has_a_line_for_each_preset() -> None:

@@ -7,6 +7,7 @@ import pytest
 from scope_ptz.geometry import Pose
 from scope_ptz.planner.base import Briefing, Finish, State
 from scope_ptz.planner.grammar import decide
+from scope_ptz.planner.grammar.answerable import answerable_questions
 from scope_ptz.planner.plan import plan
 from tests.planner.stage import LIMITS, PRESETS, Stage
 
@@ -18,6 +19,12 @@ def reply_to(instruction: str) -> tuple[str, str]:
     return decision.kind, decision.text
 
 
+def reply_to_first_step(instruction: str) -> str:
+    """Return the text of a reply without calls; empty if the instruction needs any."""
+    decision = decide(State(instruction=instruction, briefing=Briefing(presets=PRESETS, pose=Pose(), limits=LIMITS)))
+    return decision.text if isinstance(decision, Finish) else ""
+
+
 @pytest.mark.parametrize(
     "instruction",
     [
@@ -27,6 +34,60 @@ def reply_to(instruction: str) -> tuple[str, str]:
 )  # fmt: skip
 def test_thanks_are_answered_and_nothing_else(instruction: str) -> None:
     assert reply_to(instruction) == ("answered", "You're welcome.")
+
+
+@pytest.mark.parametrize(
+    ("instruction", "reply"),
+    [
+        ("hello, how are you?", "I am well, thank you. "),
+        ("hey, how's it going?", "I am well, thank you. "),
+        ("cheers, that was great", "You're welcome."),
+        ("thank you very much, you are doing great", "You're welcome."),
+        ("what a great job", "Thank you. "),
+        ("you did well", "Thank you. "),
+    ],
+)
+def test_pleasantries_are_returned(instruction: str, reply: str) -> None:
+    kind, text = reply_to(instruction)
+    assert kind == "answered"
+    assert text.startswith(reply)
+
+
+@pytest.mark.parametrize("instruction", ["that was too far", "that is good enough for the gate", "how is the yard?"])
+def test_remarks_about_a_move_or_a_place_are_no_pleasantries(instruction: str) -> None:
+    assert "thank you" not in reply_to_first_step(instruction).lower()
+
+
+@pytest.mark.parametrize("instruction", ["that is the wrong one", "no, not that one", "that's not the right one", "wrong car"])
+def test_after_a_rejection_the_question_is_which_one_is_meant(instruction: str) -> None:
+    assert reply_to(instruction) == ("clarification", "Which one do you mean? Please describe it.")
+
+
+@pytest.mark.parametrize(
+    ("question", "reason"),
+    [
+        ("who owns the van?", "A picture does not show who owns something."),
+        ("whose car is it?", "A picture does not show who owns something."),
+        ("who does the van belong to?", "A picture does not show who owns something."),
+        ("can you tell me his name?", "I cannot know people's names."),
+        ("what's the man's name?", "I cannot know people's names."),
+        ("how long until the next tram?", "I cannot know when something will happen."),
+        ("when does the next bus come?", "I cannot know when something will happen."),
+        ("what time is it?", "I have no clock or calendar of my own."),
+        ("what day is it?", "I have no clock or calendar of my own."),
+    ],
+)
+def test_a_question_that_no_picture_answers_gets_the_reason(question: str, reason: str) -> None:
+    kind, text = reply_to(question)
+    assert kind == "clarification"
+    assert text.startswith(reason)
+
+
+@pytest.mark.parametrize(
+    "question", ["what is the name of the shop?", "what is the shop called?", "what time does the clock show?", "whose van is red?"]
+)
+def test_a_similar_question_that_a_picture_may_answer_is_asked(question: str) -> None:
+    assert [call.name for call in plan(question, PRESETS).calls] == ["query_answer"]
 
 
 @pytest.mark.parametrize("instruction", ["hello", "hi there", "good morning, camera"])
@@ -107,3 +168,15 @@ def test_a_question_that_is_not_understood_gets_an_example_about_the_same_thing(
     reply = stage.run("is the bus of a sort to go with?").text
     assert reply.startswith("I did not understand that question. ")
     assert reply.endswith('for example: "how many buses are there?" or "where is the bus?".')
+
+
+@pytest.mark.parametrize(
+    ("question", "example"),
+    [
+        ("is the worker of a sort to go with?", "what is the worker doing?"),
+        ("is the timetable of a sort to go with?", "what does the timetable say?"),
+        ("is it of a sort to go with?", "what does the sign say?"),
+    ],
+)
+def test_the_examples_suit_the_kind_of_thing(question: str, example: str) -> None:
+    assert answerable_questions(question).endswith(f'or "{example}".')

@@ -132,10 +132,17 @@ class BriefView(LiveView):
         call, outcome = record.outcome.call, record.outcome
         line = Text.assemble((f"{record.step:>3}  ", "cyan"), (sanitize(call.name), "bold"), "  ", arguments_text(call.arguments))
         if outcome.error is not None:
-            line.append(f": {sanitize(shorten(outcome.error))}", style="red")
+            line.append(f": {_brief_error(outcome.error)}", style="red")
         elif outcome.result is not None and (result := _brief_result(outcome.result)):
             line.append(f": {result}", style="green")
         self.console.print(line)
+
+
+def _brief_error(error: str) -> str:
+    """Return the error of a step. That perception did not understand it is said in two words, because the answer explains it."""
+    from scope_ptz.planner.grammar.execution.answer_sentences import is_not_understood
+
+    return "not understood" if is_not_understood(error) else sanitize(shorten(error))
 
 
 def _brief_result(result: dict[str, Any]) -> str:

@@ -23,16 +23,27 @@ def is_whole_question(text: str, quotations: Sequence[str]) -> bool:
 
 def _is_question(text: str) -> bool:
     lexemes = [x for x in lexemes_of(text) if not x.has("FILLER", "COMMA")]
+    if any(x.has("NEGATED") for x in lexemes[:2]):
+        return False  # "don't follow anyone"
     return bool(lexemes) and (lexemes[-1].has("QUESTION") or lexemes[0].has("WHQ", "HOWMANY", "BE", "DOV", "HAVEV"))
 
 
 def answerable_questions(question: str) -> str:
-    """Return the kinds of questions that can be answered, with an example about a thing in the question."""
-    thing = _thing_in(question)
-    return (
-        "I can say what is in view, how many there are, where things are, what colour they are, what people are doing, and what a "
-        f'sign says, for example: "how many {english.plural(thing)} are there?" or "where is the {thing}?".'
-    )
+    """Return a sentence with two questions that can be answered, about a thing in the question if it names one."""
+    first, second = _questions_about(_thing_in(question))
+    return f'I can answer, for example: "{first}" or "{second}".'
+
+
+def _questions_about(thing: str) -> tuple[str, str]:
+    """Return two questions about a kind of thing, given as a noun in the singular."""
+    kinds = lexicon().kinds(lexicon().concept(thing) or "thing")
+    if "person" in kinds:
+        second = f"what is the {thing} doing?"
+    elif "sign" in kinds:
+        second = f"what does the {thing} say?"
+    else:
+        second = f"where is the {thing}?"
+    return f"how many {english.plural(thing)} are there?", second
 
 
 def _thing_in(question: str) -> str:

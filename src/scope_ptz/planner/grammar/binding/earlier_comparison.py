@@ -121,7 +121,7 @@ def left_view_won(conversation: Sequence[PastTurn], presets: tuple[str, ...]) ->
     """Return whether the last turn with calls found more objects in the view that the camera then left than at a preset."""
     last = next((turn for turn in reversed(conversation) if turn.exchanges), None)
     steps = (parse(last.instruction, presets).steps or ()) if last is not None else ()
-    if last is None or len(steps) != 1 or not isinstance(step := steps[0], ast.BeforeAfter) or step.than_at is None:
+    if last is None or len(steps) != 1 or not isinstance(step := steps[0], ast.Compare) or step.second_place is None:
         return False
     outcomes = [outcome for exchange in last.exchanges for outcome in exchange.outcomes]
     numbers = [int(o.result["count"]) for o in outcomes if o.call.name == "count_objects" and o.result is not None]

@@ -48,6 +48,8 @@ from scope_ptz.planner.grammar.binding.question_text import (
     two_questions,
     with_subject,
 )
+from scope_ptz.planner.grammar.binding.unknowable import why_not_about_the_scene
+from scope_ptz.planner.grammar.binding.whereabouts import report_of_last_following, thing_that_went
 from scope_ptz.planner.grammar.binding.zoom_factors import FILLS_THE_VIEW
 from scope_ptz.planner.grammar.execution.answer_sentences import noun
 
@@ -238,10 +240,14 @@ class Resolver(FollowUpSteps):
             return self._count(ast.Count((ast.Thing(pronoun="them", predicate=predicate),), step.view))
         if comparison := bare_comparison(step.question):
             return self._bind(self._earlier_comparison(comparison))
+        if went := thing_that_went(step.question):
+            if report := report_of_last_following(went, self.conversation):
+                return [ast.Reply(report)]
+            step = replace(step, question=f"where is {went}?")
         if is_request_to_describe(step.question):
             return [ast.Ask("Describe the scene.", self._view(step.view))]
         if not is_about_the_scene(f"{step.question} {self.topic if 'time' in step.question else ''}"):
-            raise UnresolvedError("I can only move the camera and answer questions about what it sees. What shall I look at?")
+            raise UnresolvedError(why_not_about_the_scene(step.question))
         if (two := two_questions(step.question)) is not None:
             return [*self._ask(replace(step, question=two[0])), *self._ask(ast.Ask(two[1], step.view))]
         if is_about_the_future(step.question, embedded=step.embedded):
@@ -255,7 +261,8 @@ class Resolver(FollowUpSteps):
         asked_about = asked_thing(question)
         self.antecedent = asked_about.description if asked_about else self.antecedent
         zoom = [ast.ZoomTo(self.thing(ast.Thing(close_up, definite=True)))] if close_up and not self.must_not_move else []
-        return [*place, *widening, *zoom, ast.Ask(question, self._view(step.view))]
+        otherwise_at = self.place(step.otherwise_at) if step.otherwise_at and not self.must_not_move else None
+        return [*place, *widening, *zoom, ast.Ask(question, self._view(step.view), otherwise_at=otherwise_at)]
 
     def _with_names(self, question: str) -> str:
         """Return a question with its pronouns and "one" replaced by what they refer to.
@@ -411,7 +418,10 @@ class Resolver(FollowUpSteps):
         return [replace(step, thing=self.thing(step.thing), places=places[::-1] if step.last else places)]
 
     def _compare(self, step: ast.Compare) -> Sequence[ast.Step]:
-        places = [match_exactly(thing.text, self.presets or ()) for thing in (step.first, step.second)]
+        if step.second_place is not None:
+            thing, place = self.thing(step.first), self.place(step.second_place)
+            return [replace(step, first=thing, second=thing, second_place=place)]
+        places = [None if step.yes_no else match_exactly(thing.text, self.presets or ()) for thing in (step.first, step.second)]
         if all(places) and not self.topic:
             raise UnresolvedError(f"What shall I count at {places[0]} and {places[1]}?")
         if all(places):
@@ -420,8 +430,7 @@ class Resolver(FollowUpSteps):
         return [replace(step, first=first, second=second, view=self._view(step.view))]
 
     def _beforeafter(self, step: ast.BeforeAfter) -> Sequence[ast.Step]:
-        than_at = self.place(step.than_at) if step.than_at is not None else None
-        return [replace(step, thing=self.thing(step.thing), moves=self.bind(step.moves), than_at=than_at)]
+        return [replace(step, thing=self.thing(step.thing), moves=self.bind(step.moves))]
 
     def condition(self, condition: ast.Condition) -> ast.Condition:
         """Return a condition with its names resolved."""

@@ -24,7 +24,32 @@ _PRAISE = frozenset({
     "that_will_do", "that_will_do_nicely",
 })  # fmt: skip
 
+_ADMIRED = "great|good|nice|perfect|excellent|lovely|brilliant|fantastic|amazing|wonderful|superb|impressive|awesome|cool"
+_DEED = "job|work|stuff|effort|camera|shot|picture|view"
+_PRAISING = (
+    f"(FILLER)* (you|that|this|it) (BE|was|were|HAVEV|DOV|did|been|doing|done|working)+ (DET|very|so|really|most|FILLER|ADVERB)* "
+    f"({_ADMIRED}|well|well_done|spot_on|star|legend|gem|genius|clever|smart|wonders) ({_DEED}|FILLER)*"
+    f"|(FILLER|what|WHQ|DET|very|really)* ({_ADMIRED}|that_is_great|that_is_perfect) ({_DEED}) (FILLER)*"
+)
+"""Praise: "you are doing great", "that was brilliant", "what a great job"."""
+
+_WELLBEING = (
+    "(FILLER|AND)* how (BE|DOV|do) (SELF|you|things|it|everything|life) (doing|do|DOACT|CARRY-ING|today|feeling|FILLER)*"
+    "|(FILLER|AND)* how BE SELF (day|shift|morning|afternoon|evening) (CARRY-ING|so|far|FILLER)*"
+)
+"""Polite questions about how somebody is: "how are you?", "how's it going?"."""
+
+_REFUSING = "(FILLER|BUT|but|no|nope|nah)*"
+_REJECTING = (
+    f"{_REFUSING} ((that|this|it) BE)? (DET)? wrong (one|FREE)"
+    f"|{_REFUSING} (that|this|it) BE not (it|DET one|DET right (one|FREE)|what SELF (meant|mean|said|asked|wanted|want) (for)?)"
+    f"|{_REFUSING} not (that|this) (one|FREE)"
+)
+"""Words with which somebody rejects what was taken and does not say what is meant: "that is the wrong one"."""
+
 _WELCOME = "You're welcome."
+_THANK_YOU = "Thank you. Tell me when you want to see something else."
+_WELL = 'I am well, thank you. Tell me where to look, or ask what is in view, for example: "how many people are there?".'
 _GOODBYE = "Goodbye."
 _ALL_RIGHT = "All right. Tell me when you want to see something else."
 _NOT_MOVING = "I am not moving. The camera stays where it is."
@@ -57,11 +82,21 @@ def reply_to_small_talk(instruction: str) -> str:
         return _WELCOME
     if any(full_match(_CLOSING, sentence) for sentence in sentences):
         return _ALL_RIGHT
+    if any(full_match(_WELLBEING, sentence) for sentence in sentences):
+        return _WELL
     if words & _FAREWELLS:
         return _GOODBYE
     if words & _GREETINGS:
         return _HELLO
+    if any(full_match(_PRAISING, sentence) for sentence in sentences):
+        return _THANK_YOU
     return _ALL_RIGHT if words & _PRAISE else ""
+
+
+def question_about_rejection(instruction: str) -> str:
+    """Return the question which one is meant, after "that is the wrong one"; empty for other texts."""
+    lexemes = [x for x in lexemes_of(instruction) if not x.has("STOP", "COMMA", "DASH")]
+    return "Which one do you mean? Please describe it." if lexemes and full_match(_REJECTING, lexemes) else ""
 
 
 def _split(lexemes: Sequence[Lexeme]) -> list[Sequence[Lexeme]]:
@@ -79,7 +114,7 @@ def _is_small_talk(sentence: Sequence[Lexeme]) -> bool:
     return bool(
         all(x.has("FILLER", "LEADFILLER", "CAMERA") for x in sentence)
         or (_has_thanks(sentence) and full_match(_THANKS_FOR, sentence))
-        or full_match(_CLOSING, sentence)
+        or any(full_match(pattern, sentence) for pattern in (_CLOSING, _PRAISING, _WELLBEING))
     )
 
 

@@ -16,7 +16,14 @@ from scope_ptz.planner.grammar.binding.names import UnresolvedError
 from scope_ptz.planner.grammar.binding.offtopic import REFUSAL, is_harmful
 from scope_ptz.planner.grammar.binding.question_text import is_request_for_total
 from scope_ptz.planner.grammar.binding.resolver import Resolver
-from scope_ptz.planner.grammar.binding.small_talk import NEVER_MIND, asks_to_repeat_reply, dismisses, reply_to_small_talk
+from scope_ptz.planner.grammar.binding.small_talk import (
+    NEVER_MIND,
+    asks_to_repeat_reply,
+    dismisses,
+    question_about_rejection,
+    reply_to_small_talk,
+)
+from scope_ptz.planner.grammar.binding.unknowable import why_unknowable
 from scope_ptz.planner.grammar.consistency.check import (
     not_understood,
     objection,
@@ -74,6 +81,8 @@ def understand(instruction: str, presets: Sequence[str] | None, conversation: Se
         return Understanding((ast.Reply(conversation[-1].reply),))
     while conversation and asks_to_repeat_reply(conversation[-1].instruction):
         conversation = conversation[:-1]  # a question that was repeated can still be answered
+    if reason := why_unknowable(instruction):
+        return Understanding(clarification=reason)
     preset_names = None if presets is None else tuple(presets)
     if _NO.fullmatch(instruction.strip()):
         return Understanding(clarification=NOTHING_DONE)
@@ -84,6 +93,8 @@ def understand(instruction: str, presets: Sequence[str] | None, conversation: Se
     understanding = _read(said, preset_names, conversation)
     if understanding.steps:
         return Understanding((ast.Instead(understanding.steps),)) if continuation.corrects else understanding
+    if question := question_about_rejection(instruction):
+        return Understanding(clarification=question)
     if continuation.corrects:
         return understanding
     versions = (_read(shorter, preset_names, conversation) for shorter in shorter_versions(written_out(said), preset_names or ()))

@@ -9,6 +9,7 @@ from scope_ptz import english
 from scope_ptz.builtin_names import GROUND_TRUTH
 from scope_ptz.english.grammar.common_nouns import is_common_noun
 from scope_ptz.english.grammar.lexicon import lexicon
+from scope_ptz.english.grammar.numbers import NUMBER_WORDS
 from scope_ptz.english.nouns import plural_noun
 from scope_ptz.planner.grammar.answerable import answerable_questions
 from scope_ptz.planner.grammar.instruction_tree import (
@@ -144,6 +145,17 @@ def not_made_out(description: str, place: str) -> str:
     return f"I cannot make out any {noun(description, 0)} {place}, but there may be some that are too small or hidden"
 
 
+def all_counted(counts: Sequence[tuple[str, int, bool]]) -> str:
+    """Return counts with their nouns, each given as description, number and whether it is complete: "1 van and 7 cars".
+
+    If there are none at all, "no" is said once: "no vans or cars".
+    """
+    if len(counts) > 1 and not any(count for _, count, _ in counts) and all(complete for _, _, complete in counts):
+        first, *others = (noun(description, 2) for description, _, _ in counts)
+        return english.listing([f"no {first}", *others], "or")
+    return english.listing([counted(description, count, complete=complete) for description, count, complete in counts])
+
+
 def where(view: str, descriptions: Sequence[str] = ()) -> str:
     """Return the scope of a count in words, after a space; empty if each description already names a part of the view."""
     if view == "full":
@@ -181,6 +193,11 @@ _NOT_UNDERSTOOD = re.compile(
 _CANNOT_TELL = re.compile(r"I cannot tell\b[^.]*")
 
 
+def is_not_understood(error: str) -> bool:
+    """Return whether an error reports that perception did not understand a question or a description."""
+    return _NOT_UNDERSTOOD.match(error) is not None
+
+
 def not_understood_text(error: str) -> str:
     """Return the note that perception did not understand a question or a description, or knows nothing about a place.
 
@@ -197,6 +214,14 @@ def not_understood_text(error: str) -> str:
     return f'I did not understand "{match["text"] or words}"'
 
 
+def reports_absence(answer: str) -> bool:
+    """Return whether an answer reports that what a question is about is not in view: "There are no docks in view"."""
+    return _ABSENT.match(answer) is not None
+
+
+_ABSENT = re.compile(r"There (?:is|are) no\b|I (?:can see|see) no\b", re.IGNORECASE)
+
+
 def object_pronoun(description: str) -> str:
     """Return the pronoun for one thing as an object: "it", or "them" for a person, whose sex may be unknown."""
     head, _ = head_and_rest(description)
@@ -210,9 +235,16 @@ def with_lower_initial(text: str) -> str:
 
 def chosen_text(description: str, matches: int, chosen: str) -> str:
     """Return which of several things was chosen: "one of the 20 signs in view, the Plough sign"."""
+    description = _without_number(description)
     name = chosen.removeprefix("The ").removeprefix("the ")
     name = "" if name.lower() == noun(description, 1).lower() else name  # "white van" does not say which of the white vans
     return f"one of the {matches} {noun(description, matches)} in view{f', the {name}' if name else ''}"
+
+
+def _without_number(description: str) -> str:
+    """Return "skips" for "two skips": how many there are is said before it."""
+    first, _, rest = description.partition(" ")
+    return rest if rest and (first.isdigit() or first.lower() in NUMBER_WORDS) else description
 
 
 def reason_and_reaction(reason: str, reaction: str) -> str:

@@ -18,7 +18,7 @@ def counts_text(parts: Sequence[ast.Tally], counts: Sequence[int]) -> str:
     listed = [
         (str(count) if count else "none") + _at(part)
         if same and i
-        else phrases.counted(part.thing.text, count) + (_at(part) if part.place else "")
+        else phrases.counted(part.thing.text, count) + (_at(part) or (" here" if places else ""))
         for i, (part, count) in enumerate(zip(parts, counts, strict=True))
     ]
     where = "" if any(part.place for part in parts) else phrases.where(parts[0].view or "current")

@@ -102,7 +102,7 @@ class ComparisonSteps(ConditionEvaluation):
 
     # Comparisons -------------------------------------------------------------------------------------------------------
     def _compare(self, step: ast.Compare) -> CallGenerator:
-        parts = tuple(ast.Tally(thing, view=step.view) for thing in (step.first, step.second))
+        parts = (ast.Tally(step.first, view=step.view), ast.Tally(step.second, step.second_place, step.view))
         first, second = yield from self._tallies(parts)
         met = first > second if step.comparison == "more" else first < second
         self._last_was_yes = met
@@ -119,14 +119,6 @@ class ComparisonSteps(ConditionEvaluation):
         before = yield from self._visible_count(text, "current")
         yield from self._run_steps(step.moves)
         after = yield from self._visible_count(text, "current")
-        if step.than_at is not None:
-            met = before > after if step.comparison == "more" else before < after
-            self._last_was_yes = met
-            self._note(
-                f"{'Yes' if met else 'No'}: I could see {phrases.counted(text, before)} before, "
-                f"and I can see {phrases.counted(text, after)} at {step.than_at.name}"
-            )
-            return
         self._note(f"I can see {phrases.counted(text, before)} before the move and {phrases.counted(text, after)} after it")
         if before == after:
             self._note("The number is the same before and after")

@@ -87,9 +87,34 @@ def moves_text(arguments: Mapping[str, Any], times: int) -> str:
     return f"{count_word(times)} move{plural}"
 
 
-def share_of_time(share: float) -> str:
-    """Return a share of a duration in words: "the whole time", "90% of the time"."""
-    return "the whole time" if round(100 * share) == 100 else f"{round(100 * share)}% of the time"
+def time_in_view(share: float, duration_s: float) -> str:
+    """Return how much of a duration a thing was in view: "the whole time", "nearly the whole time", "for about 4 seconds of that".
+
+    Args:
+        share: The fraction of the duration.
+        duration_s: The duration in seconds.
+    """
+    if round(share, 2) == 1:
+        return "the whole time"
+    if share >= _NEARLY_ALL:
+        return "nearly the whole time"
+    seconds = round(share * duration_s)
+    if not seconds:
+        return "for less than a second of that"
+    return f"for about {seconds} second{'' if seconds == 1 else 's'} of that"
+
+
+_NEARLY_ALL = 0.9
+
+_LEAST_ZOOM_CHANGE = 1.1
+"""Smallest factor between two magnifications that a report of a move mentions."""
+
+
+def zoom_text(before: float, after: float) -> str:
+    """Return a change of the magnification that nobody asked for: "in from 1x to 5x". Empty for a change that hardly shows."""
+    if max(before, after) < _LEAST_ZOOM_CHANGE * min(before, after):
+        return ""
+    return f"{'in' if after > before else 'out'} from {number(round(before, 1))}x to {number(round(after, 1))}x"
 
 
 def shortfall_text(result: Mapping[str, Any]) -> str:

@@ -58,7 +58,7 @@ class Program(CloseUpSteps, ReturnSteps, ComparisonSteps):
         return next((offer for offer in self.offers if offer.pose == self.pose), None)
 
     def _run_steps(self, steps: Sequence[ast.Step]) -> CallGenerator:
-        i = 0
+        steps, i = _with_counts_joined(steps), 0
         while i < len(steps):
             if len(stops := stops_of_tour(steps[i:])) > 1:
                 yield from self._tour(stops)
@@ -128,6 +128,7 @@ class Program(CloseUpSteps, ReturnSteps, ComparisonSteps):
         text = step.thing.text
         if text in self._not_found:
             return
+        start = self.pose
         result = yield from self._perception_call("track_object", description=text, duration_s=_whole_as_int(step.seconds))
         if result is None:
             return
@@ -139,23 +140,31 @@ class Program(CloseUpSteps, ReturnSteps, ComparisonSteps):
         self._moved_to_object = True
         followed = "person" if text.lower() in _SOMEONE else phrases.noun(text, 1)
         seconds = phrases.number(result.get("duration_s", step.seconds))
-        time = motion.share_of_time(result.get("held_share", 0.0))
-        self._note(f"I followed the {followed} for {seconds} seconds and had {phrases.object_pronoun(followed)} in view {time}")
+        pronoun = phrases.object_pronoun(followed)
+        time = motion.time_in_view(result.get("held_share", 0.0), result.get("duration_s", step.seconds))
+        zoom = f". I zoomed {zoomed}" if (zoomed := motion.zoom_text(start.zoom, self.pose.zoom)) else ""
+        self._note(f"I followed the {followed} for {seconds} seconds and had {pronoun} in view {time}{zoom}")
 
     def _count(self, step: ast.Count) -> CallGenerator:
-        view, counted = step.view or "current", list[str]()
+        view, counts = step.view or "current", list[tuple[str, int, bool]]()
         for thing in step.things:
             result = yield from self._perception_call("count_objects", description=thing.text, view=view)
             self._last_was_yes = result["count"] > 0 if result is not None else None
             if result is not None and not result["count"] and not result.get("complete", True):
                 self._note(phrases.not_made_out(thing.text, "from here"))
             elif result is not None:
-                counted.append(phrases.counted(thing.text, result["count"], complete=result.get("complete", True)))
-        if counted:
-            self._note(f"I can see {english.listing(counted)}{phrases.where(view, [thing.text for thing in step.things])}")
+                counts.append((thing.text, result["count"], result.get("complete", True)))
+        if counts:
+            self._note(f"I can see {phrases.all_counted(counts)}{phrases.where(view, [thing.text for thing in step.things])}")
 
     def _ask(self, step: ast.Ask, thing: str = "") -> CallGenerator:
+        noted = len(self.notes)
         result = yield from self._answer_to(step.question, step.view or "current", thing)
+        is_here = result is not None and result.get("known", True) and not phrases.reports_absence(str(result["answer"]))
+        if step.otherwise_at is not None and not is_here:
+            del self.notes[noted:]
+            yield from self._gotopreset(ast.GoToPreset(step.otherwise_at))
+            result = yield from self._answer_to(step.question, "current", thing)
         self._state_answer(result)
 
     def _state_answer(self, result: dict[str, Any] | None) -> None:
@@ -293,6 +302,18 @@ def _zooms_in(step: ast.Step) -> bool:
     return isinstance(step, ast.Move) and all(
         isinstance(part, ast.Zoom) and (part.kind == "in" or (part.kind == "factor" and part.value > 1)) for part in step.parts
     )
+
+
+def _with_counts_joined(steps: Sequence[ast.Step]) -> list[ast.Step]:
+    """Return steps in which neighbouring counts in the same view are one step, which is reported in one sentence."""
+    joined: list[ast.Step] = []
+    for step in steps:
+        last = joined[-1] if joined else None
+        if isinstance(step, ast.Count) and isinstance(last, ast.Count) and last.view == step.view:
+            joined[-1] = ast.Count((*last.things, *step.things), step.view)
+        else:
+            joined.append(step)
+    return joined
 
 
 def _is_in_wrong_direction(aim: ast.Aim, pose: Pose) -> bool:

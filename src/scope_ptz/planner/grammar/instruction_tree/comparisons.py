@@ -63,10 +63,11 @@ class FirstWith:
 
 @dataclass(frozen=True, slots=True)
 class Compare:
-    """Compare the counts of two descriptions in one view.
+    """Compare the counts of two descriptions in one view, or in the current view and at a preset.
 
     Attributes:
         yes_no: Whether the question is whether there are more (or fewer) of the first than of the second.
+        second_place: The preset to count the second at; None for the same view.
     """
 
     first: Thing
@@ -74,6 +75,7 @@ class Compare:
     comparison: Comparison = "more"
     view: View | None = None
     yes_no: bool = False
+    second_place: PresetRef | None = None
 
 
 @dataclass(frozen=True, slots=True)

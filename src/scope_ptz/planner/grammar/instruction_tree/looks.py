@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 if TYPE_CHECKING:
-    from scope_ptz.planner.grammar.instruction_tree.conditions import Thing
+    from scope_ptz.planner.grammar.instruction_tree.conditions import PresetRef, Thing
     from scope_ptz.tools.arguments import View
 
 
@@ -32,11 +32,13 @@ class Ask:
 
     Attributes:
         embedded: Whether the question is part of another sentence ("tell me if it is open").
+        otherwise_at: The preset to go to, and to ask again at, if the current view does not show what is asked about.
     """
 
     question: str
     view: View | None = None
     embedded: bool = False
+    otherwise_at: PresetRef | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -152,16 +152,11 @@ class SameAt:
 
 @dataclass(frozen=True, slots=True)
 class BeforeAfter:
-    """Compare the counts before and after moves.
-
-    Attributes:
-        than_at: The preset to which the only move leads, if the question is whether more is in view now than there.
-    """
+    """Compare the counts before and after moves."""
 
     thing: Thing
     moves: tuple[Step, ...]
     comparison: Comparison = "more"
-    than_at: PresetRef | None = None
 
 
 Step = (

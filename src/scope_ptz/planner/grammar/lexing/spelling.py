@@ -4,14 +4,17 @@ from __future__ import annotations
 
 from functools import lru_cache
 
+from scope_ptz.english import singular
 from scope_ptz.english.grammar.common_nouns import is_common_noun
 from scope_ptz.english.grammar.lexicon import lexicon
 from scope_ptz.english.grammar.numbers import NUMBER_WORDS
 from scope_ptz.english.grammar.parts_of_speech import parts_of_speech, verb_form
+from scope_ptz.english.nouns import plural_noun
 from scope_ptz.planner.grammar.lexing.lexicon import known_words, spelling_lists
 
 _MIN_CHARS = 5  # in shorter words, only exchanged, doubled and missing letters count as typing errors
 _MIN_SHORT_CHARS = 3
+_MIN_NOUN_CHARS = 6  # shorter words that nobody knows may be names
 
 
 def within_one_edit(a: str, b: str) -> bool:
@@ -50,16 +53,34 @@ def with_whole_ending(word: str) -> str:
 
 @lru_cache(maxsize=4096)
 def corrected_noun(word: str) -> str:
-    """Return the noun or adjective that results from swapping two adjacent letters or doubling one.
+    """Return the word that a misspelt noun or adjective stands for.
 
-    Known words, and words that could be corrected in more than one way, are returned unchanged.
+    It is the only noun for a kind of thing that perception knows with a letter more or less, or with two letters swapped
+    ("exavator"), or the only English noun or adjective that results from swapping two adjacent letters or doubling one. Known
+    words, and words that could be corrected in more than one way, are returned unchanged.
     """
     if is_english(word) or parts_of_speech(word) or verb_form(word) is not None:
         return word
+    if len(word) >= _MIN_NOUN_CHARS:
+        things = {noun for noun in _nouns_for_things() if noun[0] == word[0] and _differs_by_a_slip(word, noun)}
+        if len({singular(noun) for noun in things}) == 1:
+            return max(things, key=lambda noun: (noun.endswith("s") == word.endswith("s"), noun))
     swapped = {word[:i] + word[i + 1] + word[i] + word[i + 2 :] for i in range(1, len(word) - 1)}
     doubled = {word[:i] + word[i] + word[i:] for i in range(1, len(word))}
     meant = {other for other in swapped | doubled if parts_of_speech(other) & {"NOUN", "ADJ"}}
     return meant.pop() if len(meant) == 1 else word
+
+
+def _differs_by_a_slip(word: str, noun: str) -> bool:
+    """Return whether a letter is missing, added or swapped. With another letter, it may be another word: "shunter", "shutter"."""
+    return within_one_edit(word, noun) and (len(word) != len(noun) or sorted(word) == sorted(noun))
+
+
+@lru_cache(maxsize=1)
+def _nouns_for_things() -> frozenset[str]:
+    """Return the longer nouns of one word for kinds of things, in the singular and the plural."""
+    nouns = [noun for noun in lexicon().concepts if noun.isalpha() and len(noun) >= _MIN_NOUN_CHARS]
+    return frozenset({*nouns, *map(plural_noun, nouns)})
 
 
 def _with_letters_swapped(word: str) -> list[str]:

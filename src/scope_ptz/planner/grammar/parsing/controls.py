@@ -12,6 +12,10 @@ from scope_ptz.planner.grammar.parsing.parts.preset_refs import places_of
 
 _NEGATION = "(NEGATED|(SELF)? (do|MODAL|need) not|DOV not)"
 
+_FOLLOWING_ANYONE = (
+    "(TRACK|TRACK-ING) (SOMEONE|anything|ANY FREE|DET FREE{1,3}) (REL (BE|FREE|PREP|PRON|DET|GLUE|CARRY|CARRY-S)+)? (FILLER)*"
+)
+
 _SUMS = frozenset({"add", "sum", "total", "together", "sum_up", "add_up", "total_up", "tot_up"})
 _DIFFERENCES = frozenset({"difference", "the_difference"})
 """Words of clauses that ask to add or subtract the earlier counts: "... and add them up"."""
@@ -130,6 +134,8 @@ def _forbid_step(lexemes: Sequence[Lexeme]) -> tuple[Step, ...] | None:
     no_picture = "(FILLER|DET|any|MORE|need for)* PICTURE (FILLER|BE|needed|required|wanted|necessary|allowed|(at|of|on|for) _+)*"
     if full_match(no_picture, rest):
         return (Forbid(),)  # "go to the gate, no photos"
+    if full_match(_FOLLOWING_ANYONE, rest):
+        return (Forbid(),)  # "zoom in on the van and don't follow anyone who walks past it"
     forms = "|".join(f"{verb}|{verb}-ING" for verb in VERBS)
     if not match_start(f"(FILLER|DET|any)* ({forms}|ZOOMNOUN|LEFT|RIGHT|UP|DOWN|NUM|movement|LITTLE|LOT)", rest):
         return None

@@ -48,6 +48,7 @@ from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_s
 from scope_ptz.planner.grammar.parsing.parts.preset_refs import (
     occupied_place,
     place_asked_about,
+    place_sought,
     places_of,
     stays_in_view,
     without_inner_place,
@@ -154,6 +155,13 @@ class Reader:
             if (ahead := full_match(r"with (?P<what>_+)", body)) is not None:
                 body = ahead["what"]
             return (EachTime(self.read(body)),)
+        if told := full_match(
+            r"(?P<tell>TELL (SELF)*) at (EACHTIME|EVERY) (one|PRESETNOUN|of|PRON)* (COMMA)? (?P<what>(whether|IF|WHQ|HOWMANY) _+)",
+            lexemes,
+        ):
+            asked = self.read((*told["tell"], *told["what"]))  # "tell me at each whether it is open"
+            is_tour = any(x.has("PRESETNOUN") for x in lexemes[: len(lexemes) - len(told["what"])])
+            return (AtPlaces((), asked),) if is_tour else (EachTime(asked),)
         if match := full_match(r"(EACHTIME) (COMMA|FILLER)* (?P<body>_+)", lexemes):
             return (EachTime(self.read(match["body"])),)
         if match := full_match(
@@ -276,7 +284,12 @@ class Reader:
         return (AtPlaces((place,), steps),) if steps and all(isinstance(step, Ask | Count | Read) for step in steps) else None
 
     def _named_place(self, lexemes: Sequence[Lexeme], has_question_mark: bool) -> tuple[Step, ...] | None:
-        """Read "has the bus bay got any room left?" as a question at the preset."""
+        """Read "has the bus bay got any room left?" as a question at the preset.
+
+        "Where is the bus bay?" is asked in the current view first.
+        """
+        if (sought := place_sought(self.source, lexemes)) is not None:
+            return (Ask(f"{text_of(self.source, lexemes)}?", otherwise_at=sought),)
         if (
             not (has_question_mark or is_question(lexemes) or lexemes[0].has("ANY", "TELL"))
             or (place := place_asked_about(self.source, lexemes)) is None

@@ -14,13 +14,13 @@ from scope_ptz.planner.grammar.instruction_tree import (
     CompareWithBefore,
     Comparison,
     Count,
-    GoToPreset,
     Step,
     Thing,
     Unclear,
     WhichPreset,
 )
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
+from scope_ptz.planner.grammar.parsing.looks.here_and_there import comparison_with_preset
 from scope_ptz.planner.grammar.parsing.looks.preset_presence import preset_presence_step
 from scope_ptz.planner.grammar.parsing.looks.rankings import ranking_step
 from scope_ptz.planner.grammar.parsing.parts.clause import NotUnderstoodError, Source, text_of, trimmed
@@ -84,6 +84,7 @@ def comparison_step(source: Source, lexemes: Sequence[Lexeme], read_moves: ReadM
         lexemes = tuple(asked["asked"])  # "which is it, more girls or more boys?", "fewer cars than vans, or not?"
     return (
         _same_thing_at_two_presets(source, lexemes)
+        or comparison_with_preset(source, lexemes)
         or ranking_step(source, lexemes)
         or _preset_comparison(source, lexemes)
         or _before_after(source, lexemes, read_moves)
@@ -211,16 +212,7 @@ def _is_yes_no(lexemes: Sequence[Lexeme]) -> bool:
 
 
 def _before_after(source: Source, lexemes: Sequence[Lexeme], read_moves: ReadMoves) -> Step | None:
-    """Read comparisons of the counts before and after a move, which may be that to a preset."""
-    elsewhere = full_match(
-        rf"{_SKIP} {_SEE} {_WAY} (?P<thing>_+?) here (than_at|than_in|(THAN|than) (at|in|on)?) (DET)* (?P<place>PRESET) "
-        r"(PRESETNOUN)?",
-        lexemes,
-    )
-    if elsewhere is not None:
-        counted, places = thing_of(source, trimmed(elsewhere["thing"], "VISIBLE")), places_of(source, elsewhere["place"])
-        if counted is not None and places:
-            return BeforeAfter(counted, (GoToPreset(places[0]),), _comparison(elsewhere["way"]), places[0])
+    """Read comparisons of the counts before and after a move."""
     patterns = (
         (
             rf"{_SKIP} {_SEE} {_WAY} (?P<thing>_+?) (VISIBLE)? (before or AFTER|BEFORE or AFTER|AFTER or BEFORE|AFTER|"

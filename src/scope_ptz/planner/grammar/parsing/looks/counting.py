@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from scope_ptz.english import is_plural
+from scope_ptz.english.grammar.lexicon import lexicon
 from scope_ptz.english.grammar.parts_of_speech import verb_form
 from scope_ptz.english.grammar.questions.recognition import looks_like_description
 from scope_ptz.planner.grammar.instruction_tree import (
@@ -27,7 +28,7 @@ from scope_ptz.planner.grammar.parsing.parts.noun_phrases import (
     things_of,
     without_function_words,
 )
-from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start, search
+from scope_ptz.planner.grammar.parsing.parts.patterns import Match, full_match, match_start, search
 from scope_ptz.planner.grammar.parsing.parts.preset_refs import place_of, places_of
 from scope_ptz.planner.grammar.parsing.parts.scopes import has_full_scope, without_view
 
@@ -49,6 +50,10 @@ _SEEING = (
 
 _READING = "(can|could) SELF (ADVERB|FILLER)* READ (VISIBLE|FILLER|NOW|out|there)*"
 
+
+_HAVING = "(DOV SELF (HAVEV|have)|HAVEV SELF (got)?|BE there|there BE)"
+_BEING_THERE = "standing|sitting|lying|waiting"
+"""Postures that only say that something is there: "how many trailers do we have standing here?"."""
 
 _IN_ALL = "in_total|in total|altogether|in_all|in all|overall"
 
@@ -152,14 +157,13 @@ def _counted(
         verb = acting["verb"][0].word
         if verb_form(verb) == "base" and is_plural(acting["thing"][-1].word):
             return Count((Thing(f"{text_of(source, acting['thing'])} {verb_forms(verb)['ing'][0]}"),), view)
-    if match := full_match(
-        rf"(?P<thing>_+?) {_SEEING}+ (VISIBLE|FILLER|FULL|NOW|there|altogether|present|out there|INTURN)*",
-        rest,
+    if match := _with_posture(rest) or full_match(
+        rf"(?P<thing>_+?) {_SEEING}+ (VISIBLE|FILLER|FULL|NOW|there|altogether|present|out there|out|INTURN)*", rest
     ):
         things = things_of(source, match["thing"])
         if things:
             return Count(things, view)
-    if how is not None and (places := places_of(source, rest)):
+    if how is not None and rest[0].has("PREP") and (places := places_of(source, rest)):
         return AtPlaces(places, (Count((Thing("people"),), view),))  # "how many on the boardwalk?"
     if how is not None and match_start("(in|on|at) DET FREE", rest):
         return Count((Thing(f"people {text_of(source, rest)}"),), view)  # "how many in the queue?"
@@ -168,6 +172,13 @@ def _counted(
     if things := things_of(source, rest):
         return Count(things, view)
     return None
+
+
+def _with_posture(rest: Sequence[Lexeme]) -> Match | None:
+    """Return the match of "trailers do we have standing here", in which the posture of a thing only says that it is there."""
+    match = full_match(rf"(?P<thing>_+?) {_HAVING} ({_BEING_THERE}) (VISIBLE|FILLER|NOW|there)*", rest)
+    concept = lexicon().concept(match["thing"][-1].word) if match is not None else None
+    return match if concept is not None and "person" not in lexicon().kinds(concept) else None
 
 
 def _share_of_last(source: Source, rest: Sequence[Lexeme]) -> Thing | None:

@@ -29,7 +29,8 @@ _GO = (
     r"AGAINWORD|DOACT)*"
 )
 _TAIL = (
-    r"(FILLER|on (DET)? VIEWNOUN|on|screen|up|now|please|VIEWNOUN|PRESETNOUN|again|first|next|instead|INSTEAD|AGAINWORD|SELF|"
+    r"(FILLER|on (DET)? (big|large|main)? (VIEWNOUN|screen)|on|screen|up|now|please|VIEWNOUN|"
+    r"PRESETNOUN|again|first|next|instead|INSTEAD|AGAINWORD|SELF|"
     r"FIRSTLY|VISIBLE|QUOTE|INTURN|over|COMMA (?=over)|CAMERA|ORDINAL|for|me|is|what|i|need|want|NOW)*"
 )
 _SUPERLATIVES = frozenset({"busiest", "quietest", "fullest", "emptiest", "most crowded", "least crowded", "calmest"})
@@ -44,7 +45,7 @@ _STORED = (
     "(FILLER)* ((LISTING|TELL)? (me|us)? (WHQ|DET|all|EVERY|HOWMANY)* PRESETNOUN (names)? (DOV|HAVEV|BE|MODAL|SELF|there|got|have|"
     "hold|holds|know|keep|save|saved|store|stored|set|set_up|up|programmed|loaded|available|in|on|DET|CAMERA|FILLER|this|"
     "thing|system|unit|memory|box|rig|device|right|now|here|at|the|moment|to|choose|from|pick|disposal|my|our|(this|"
-    "DET) FREE \\Z)*)"
+    "(?!ANY)DET) FREE \\Z)*)"
 )
 """A question about the presets themselves: "presets?", "what views have we got saved on this thing?"."""
 
@@ -73,6 +74,8 @@ def go_step(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
         return GoToPreset(place) if place else None
     if any(x.has("SNAP") for x in lexemes):
         return None  # "capture the gate"
+    if search("HOWMANY|ANY PRESET", lexemes):
+        return None  # "any containers?" asks for things, also if a preset has the same name
     if match := full_match(rf"{_GO} {PLACE} {_TAIL}", lexemes) or full_match(
         (
             rf"(PAN|TILT|TURN|AIM|SWITCH|CARRY) (CAMERA|it|FILLER|over|AMOUNTISH)* (LEFT|RIGHT|UP|DOWN) (over|back|"

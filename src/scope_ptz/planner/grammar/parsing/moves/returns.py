@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from scope_ptz.planner.grammar.instruction_tree import Amount, Back, Step, Turn
+from scope_ptz.planner.grammar.instruction_tree import Amount, Back, Move, Step, Turn
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 from scope_ptz.planner.grammar.parsing.parts.clause import fraction_of
 from scope_ptz.planner.grammar.parsing.parts.patterns import Match, full_match
@@ -22,6 +22,7 @@ _HOW_FAR = (
 )
 _BACK = "(BACK|return|go_back|come_back|turn_back|swing_back|move_back|head_back)"
 _TOWARDS = rf"{_VERB} {_BACK} (to|DET|GLUE)* (?P<way>LEFT|RIGHT|UP|DOWN) (GLUE|FILLER|AGAINWORD)*"
+_TOWARDS_BY = rf"{_VERB} {_BACK} to DET (?P<way>LEFT|RIGHT) (GLUE)? (by)? (AMOUNTISH)* (?P<number>NUM) DEG (FILLER)*"
 BACK_UP = "(FILLER)* BACK UP (FILLER|LITTLE|LOT)*"
 """Words that can ask for a tilt, a zoom or a return."""
 _OTHER_WAY = "(in|to|DET)* (other|opposite) (way|direction|side)"
@@ -33,6 +34,10 @@ def return_step(lexemes: Sequence[Lexeme]) -> Step | None:
         for order in (f"{way} {_HOW_FAR}", f"{_HOW_FAR} {way}"):
             if (match := full_match(f"{_VERB} {order} (GLUE|FILLER|AGAINWORD)*", lexemes)) is not None:
                 return Back(amount=_amount(match))
+    if (sized := full_match(_TOWARDS_BY, lexemes)) is not None:
+        side = sized["way"][0]
+        sense = 1 if side.has("RIGHT", "UP") else -1
+        return Move((Turn("pan" if side.has("LEFT", "RIGHT") else "tilt", sense, Amount("degrees", sized["number"][0].value)),))
     if full_match(BACK_UP, lexemes) is None and (match := full_match(_TOWARDS, lexemes)) is not None:
         side = match["way"][0]
         return Back(turn=Turn("pan" if side.has("LEFT", "RIGHT") else "tilt", 1 if side.has("RIGHT", "UP") else -1))

@@ -101,6 +101,12 @@ def place_asked_about(source: Source, lexemes: Sequence[Lexeme]) -> PresetRef | 
     return PresetRef(name.preset, explicit=True) if is_unmistakable else None
 
 
+def place_sought(source: Source, lexemes: Sequence[Lexeme]) -> PresetRef | None:
+    """Return the preset in "where is the town hall?"; None for other clauses, and if the camera must stay in the current view."""
+    match = full_match("where BE (?P<place>(DET)? PRESET) (FILLER|NOW)*", lexemes)
+    return place_of(source, match["place"]) if match is not None and not stays_in_view(source) else None
+
+
 def without_inner_place(source: Source, lexemes: Sequence[Lexeme]) -> tuple[Source, tuple[Lexeme, ...], PresetRef] | None:
     """Return "is the barrier up?" and the preset for "is the barrier at the crossing up?"; None for other clauses.
 

@@ -35,6 +35,7 @@ _TIMES = (
     r"(COMMA)? (for)? (?P<times>(?P<number>NUM) X(?! (DET|as|ASCLOSE|ZOOMNOUN|ZOOM|IN|OUT|more|further|"
     r"further_in))|(?P<twice>twice)|(?P<thrice>thrice)|X (?P<number2>NUM)) (INTURN|FILLER)*"
 )
+_OVER_THE_WHOLE = "(?P<body>_+?) COMMA? (over|across|throughout|around|all_over) the (whole|entire) (?P<site>FREE{1,2}) (FILLER)*"
 MAX_TIMES = 50
 SECONDS = (
     r"((?P<a>DET|about|AMOUNTISH|interval of|period of|next|full|whole|good|solid|LIMIT)* "
@@ -53,6 +54,8 @@ def without_view(lexemes: Sequence[Lexeme]) -> tuple[tuple[Lexeme, ...], View | 
         lexemes = (*seen["body"], *seen["scope"])  # "the number of flags, looking over the whole area"
     if all_around := full_match("(?P<body>_+) COMMA SCAN-ING", lexemes):
         lexemes, view = tuple(all_around["body"]), "full"  # "how many trailers, looking all around?"
+    if (whole := full_match(_OVER_THE_WHOLE, lexemes)) is not None and lexicon().concept(whole["site"][-1].word) is None:
+        lexemes, view = tuple(whole["body"]), "full"  # "the number of light poles over the entire terminal"
     changed = True
     while changed and len(lexemes) > 1:
         changed = False

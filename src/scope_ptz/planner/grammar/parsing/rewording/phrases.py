@@ -154,6 +154,8 @@ def _replacement(before: Sequence[Lexeme], lexeme: Lexeme, after: Lexeme | None)
         return [lexeme.reworded("finally", "FIRSTLY")]  # "first the gate, then the yard, last the dock"
     if lexeme.word == "at_each" and last is not None and last.has("BE") and _counts_on_tour(before):
         return [lexeme.reworded("there", "ADVERB", "GLUE", "VISIBLE")]  # "do a lap of the presets and tell me how many are at each"
+    if lexeme.word == "and_please" and after is not None and after.has("DOV", "NEGATED"):
+        return [lexeme.reworded("and", "AND", "GLUE"), lexeme.reworded("please", "FILLER")]  # "... and please don't follow it"
     if lexeme.word == "return" and after is not None and after.has(*DIRECTIONS):
         return [lexeme.reworded("go", "CARRY"), lexeme.reworded("back", "BACK")]
     return [lexeme]

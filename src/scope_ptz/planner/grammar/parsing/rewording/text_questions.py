@@ -31,6 +31,7 @@ QUESTIONS = (
     ),
     (r"\bppl\b", "people"),
     (r"\bhows\b", "how's"),
+    (r"\bwheres\b", "where's"),
     (r"\bwhoever(?:['’]s| is)\b", "the person"),
     (rf"^(?:so\s+)?(?:nobody|no[ -]?one)(?:['’]s| is| are) (.+?),? (?:{_TAGS})\?$", r"is anyone \1?"),
     (r"^there (is|are)(?:n['’]t| not) (.+), \1 (?:there|they)\?$", r"\1 there \2?"),

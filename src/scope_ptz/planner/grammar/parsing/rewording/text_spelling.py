@@ -28,6 +28,7 @@ WORDS = {
     "mek": "make",
     "mnay": "many",
     "nay": "no",
+    "nxt": "next",
     "obtain": "get",
     "ontoo": "onto",
     "oughta": "ought to",
