@@ -142,14 +142,14 @@ def test_there_is_the_preset_that_was_found() -> None:
 @pytest.mark.parametrize(
     ("asked", "answer"),
     [
-        ("are there more cones here than at the gate?", "Yes: I could see 4 cones before, and I can see 1 cone at gate."),
-        ("are there fewer cones here than at the gate?", "No: I could see 4 cones before, and I can see 1 cone at gate."),
+        ("are there more cones here than at the gate?", "Yes: I can see 4 cones here and 1 at gate."),
+        ("are there fewer cones here than at the gate?", "No: I can see 4 cones here and 1 at gate."),
     ],
 )
 def test_here_is_compared_with_a_preset(asked: str, answer: str) -> None:
     calls, reply = last_calls("go to the highway", "pan left 10", asked, looks=(4, 1))
     assert [name for name, _ in calls] == ["count_objects", "go_to_preset", "count_objects"]
-    assert reply == f"I went to preset gate. {answer} (Source: the simulator's ground truth.)"
+    assert reply == f"{answer} (Source: the simulator's ground truth.)"
 
 
 def test_there_is_the_view_with_more_things() -> None:

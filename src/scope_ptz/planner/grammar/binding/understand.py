@@ -33,6 +33,7 @@ from scope_ptz.planner.grammar.consistency.check import (
 )
 from scope_ptz.planner.grammar.lexing.lexer import lexemes_of
 from scope_ptz.planner.grammar.parsing.instruction_parser import MAX_CHARS, Parsed, parse
+from scope_ptz.planner.grammar.parsing.remark_model.versions import versions_without_remarks
 from scope_ptz.planner.grammar.parsing.rewording.plain_text import written_out
 from scope_ptz.planner.grammar.parsing.rewording.shorter_versions import shorter_versions
 
@@ -97,8 +98,26 @@ def understand(instruction: str, presets: Sequence[str] | None, conversation: Se
         return Understanding(clarification=question)
     if continuation.corrects:
         return understanding
-    versions = (_read(shorter, preset_names, conversation) for shorter in shorter_versions(written_out(said), preset_names or ()))
-    return next((version for version in versions if version.steps), understanding)
+    return _read_without_remarks(said, preset_names, conversation) or understanding
+
+
+def _read_without_remarks(
+    said: str, preset_names: tuple[str, ...] | None, conversation: Sequence[PastTurn]
+) -> Understanding | None:
+    """Return the steps of a shorter version of a text that was not understood; None if no version is.
+
+    Remarks with a known form may name directions and amounts ("Dave panned left 20 yesterday"). Those that only the model
+    recognises may not: the steps must account for the whole text.
+    """
+    whole, presets = written_out(said), preset_names or ()
+    for shorter in shorter_versions(whole, presets):
+        if (understanding := _read(shorter, preset_names, conversation)).steps:
+            return understanding
+    for shorter in versions_without_remarks(whole, presets):
+        steps = (understanding := _read(shorter, preset_names, conversation)).steps
+        if steps and not (objection_to_loss(whole, steps, presets) or objection_to_forbidden(whole, steps)):
+            return understanding
+    return None
 
 
 def _read(said: str, preset_names: tuple[str, ...] | None, conversation: Sequence[PastTurn]) -> Understanding:

@@ -51,7 +51,7 @@ _EXTENT = re.compile(
 )
 """Words which show that a phrase with "for" or "as" says how long or how far to go, so that it must be kept."""
 
-_UNFINISHED = re.compile(
+UNFINISHED = re.compile(
     r"\b(?:until|till|til|if|when|once|unless|while|as|that|which|who|where|what|whether|how|and|or|but|to|the|an?|of|for|at|on|in|by|with"
     r"|(?:how|what|who|where)['’]s|than|like|before|after|whatever|because|so|is|are|was|were|not|only|just|every|each|time)\W*$",
     re.IGNORECASE,
@@ -74,7 +74,7 @@ def shorter_versions(text: str, presets: tuple[str, ...]) -> Iterator[str]:
         return
     if relay := _RELAYED_QUESTION.match(text):
         question = text[relay.end() :]
-        if _is_harmless(_without_relaying(relay[0]), presets, may_be_empty=True) and not _refers_back(question):
+        if _is_harmless(_without_relaying(relay[0]), presets, may_be_empty=True) and not refers_back(question):
             yield f"tell me {question}"
     cuts = [(0, 0), *((match.start(), match.end()) for match in _BOUNDARY.finditer(text))]
     begins = [end for start, end in cuts if _can_drop_lead(text[:start], text[end:], presets)]
@@ -90,7 +90,7 @@ def _can_drop_lead(lead: str, rest: str, presets: tuple[str, ...]) -> bool:
     """Return whether the words before a request are only remarks, or there are none."""
     if not lead:
         return True
-    if not _opens_request(rest, presets) or _refers_back(rest):
+    if not opens_request(rest, presets) or refers_back(rest):
         return False
     if REPORT.fullmatch(lead.strip(" ,.;!")) and not _REPEATS.search(rest):
         return True
@@ -102,7 +102,7 @@ def _ends(text: str, presets: tuple[str, ...]) -> Iterator[int]:
     """Yield each index at which a text may end because only remarks follow."""
     for match in _BOUNDARY.finditer(text):
         said, tail = text[: match.start()], text[match.end() :].rstrip(" .!?")
-        if _UNFINISHED.search(said) is None and is_remark(tail, presets) and not _is_amount(said, tail):
+        if UNFINISHED.search(said) is None and is_remark(tail, presets) and not is_amount(said, tail):
             yield match.start()
     for match in _PURPOSE.finditer(text):
         tail = text[match.end() :]
@@ -110,7 +110,7 @@ def _ends(text: str, presets: tuple[str, ...]) -> Iterator[int]:
             yield match.start()
 
 
-def _is_amount(said: str, tail: str) -> bool:
+def is_amount(said: str, tail: str) -> bool:
     """Return whether a number in the words after a command may be the amount of a move or how long to follow a thing."""
     corrects = NUMBER.search(said) is not None and AMOUNT.search(tail) is not None
     return corrects or (DURATION.search(tail) is not None and FOLLOWING.search(said) is not None)
@@ -122,13 +122,13 @@ def is_remark(tail: str, presets: tuple[str, ...]) -> bool:
     return _is_harmless(first, presets) and all(_asks_for_nothing(part, presets) for part in others)
 
 
-def _opens_request(text: str, presets: tuple[str, ...]) -> bool:
+def opens_request(text: str, presets: tuple[str, ...]) -> bool:
     """Return whether a text begins with a command or question."""
     lexemes = bare_clause(lexemes_of(text, presets))
     return bool(lexemes) and (lexemes[0].has(*VERBS, "TELL", "HOWMANY") or is_question(lexemes))
 
 
-def _refers_back(text: str) -> bool:
+def refers_back(text: str) -> bool:
     """Return whether the first clause of a text may refer to something that was said before it."""
     return _REFERENCE.search(_BOUNDARY.split(text)[0]) is not None
 

@@ -1,0 +1,1 @@
+"""Tell remarks from requests with a linear model that is trained on the instructions in the tests."""

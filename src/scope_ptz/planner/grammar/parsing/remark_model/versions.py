@@ -1,0 +1,88 @@
+"""Shorter versions of an instruction that was not understood: without the segments that the model takes for remarks."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+
+from scope_ptz.planner.grammar.parsing.remark_model.features import features_of
+from scope_ptz.planner.grammar.parsing.remark_model.model import remark_model
+from scope_ptz.planner.grammar.parsing.remark_model.segments import Segment, segments_of
+from scope_ptz.planner.grammar.parsing.rewording.remark_forms import SUBJECT
+from scope_ptz.planner.grammar.parsing.rewording.shorter_versions import UNFINISHED, is_amount, opens_request, refers_back
+
+_MAX_CHARS = 500  # longer texts are not shortened: each version is parsed again
+_MAX_SEGMENTS = 12
+_MAX_VERSIONS = 8
+_MIN_LOG_ODDS = 0.0
+_MIN_WORDS = 2
+
+_NEGATED_STATEMENT = re.compile(
+    rf"^(?:{SUBJECT})\b(?! (?:don['’]?t|do not|didn['’]?t) (?:want|need|mean))"
+    r"(?P<rest>.*?\b(?:not|never|\w+n['’]t|cannot))\b",
+    re.IGNORECASE,
+)
+"""A statement with a negation, which forbids nothing: "they haven't signed the form"."""
+
+_EVENT = re.compile(r"^(?:before|after) (?:i|we|he|she|they|it|the|my|our|someone|\w+ \w+s)\b", re.IGNORECASE)
+"""The beginning of a clause about a time: "before the boss comes"."""
+
+_BINDING = re.compile(
+    r"^(?:left|right|up|down|in|out)\b"
+    r"|\b(?:don['’]?t|do not|not|no|never|nor|without|instead|unless|if|until|till|otherwise|else|whichever|either|only|except"
+    r"|rather|wait|actually|cancel|forget|ignore|scratch|stop|mind|mean|first|then|next|before|after|than|same|both|each|every"
+    r"|again|last one|that one|lot|bit|touch|twice|zoom|pan|tilt)\b",
+    re.IGNORECASE,
+)
+"""Words with which a segment may change what the others ask for, so that it must not be left out."""
+
+
+def versions_without_remarks(text: str, presets: tuple[str, ...]) -> Iterator[str]:
+    """Yield shorter versions of an instruction: first without the likeliest remark, then without the two likeliest, and so on.
+
+    What is kept must be complete, and must not refer to what was left out ("there is a van by the fence, follow it").
+    """
+    segments = segments_of(text) if len(text) <= _MAX_CHARS else ()
+    if not 1 < len(segments) <= _MAX_SEGMENTS:
+        return
+    log_odds = {
+        index: remark_model().log_odds(features_of(segments, index, presets))
+        for index, segment in enumerate(segments)
+        if not _is_binding(segment.text)
+    }
+    remarks = sorted((index for index, value in log_odds.items() if value > _MIN_LOG_ODDS), key=lambda index: -log_odds[index])
+    left_out = [remarks[:size] for size in range(1, len(remarks) + 1)] + [[index] for index in remarks[1:]]
+    for indices in left_out[:_MAX_VERSIONS]:
+        version = _without(text, segments, frozenset(indices), presets)
+        if version is not None:
+            yield version
+
+
+def _is_binding(text: str) -> bool:
+    """Return whether a segment may restrict, forbid, repeat or take back something."""
+    if (negated := _NEGATED_STATEMENT.match(text)) is not None:
+        text = text[negated.end() :]
+    elif (event := _EVENT.match(text)) is not None:
+        text = text[event.end() :]
+    return _BINDING.search(text) is not None
+
+
+def _without(text: str, segments: Sequence[Segment], left_out: frozenset[int], presets: tuple[str, ...]) -> str | None:
+    """Return an instruction without some of its segments; None if the rest is incomplete or refers to them."""
+    kept = [index for index in range(len(segments)) if index not in left_out]
+    said = " ".join(segments[index].text for index in kept)
+    if len(said.split()) < _MIN_WORDS or is_amount(said, " ".join(segments[index].text for index in sorted(left_out))):
+        return None
+    for index in kept:
+        own = segments[index].text
+        if index + 1 in left_out and UNFINISHED.search(own) is not None:
+            return None
+        if index - 1 in left_out:
+            follows_mark = segments[index - 1].mark != ""
+            if refers_back(own) or not (follows_mark or opens_request(own, presets)):
+                return None
+    parts = [
+        segments[index].text + (text[segments[index].end : segments[index + 1].start] if index + 1 < len(segments) else "")
+        for index in kept
+    ]
+    return "".join(parts).strip(" ,;:-–—")
