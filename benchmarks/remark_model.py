@@ -99,7 +99,7 @@ def _cross_validated(examples: Sequence[Example]) -> np.ndarray:
     for fold in range(_FOLDS):
         model = _trained([example for example, own in zip(examples, folds, strict=True) if own != fold])
         for index in np.flatnonzero(folds == fold):
-            log_odds[index] = model.log_odds(examples[index].features)
+            log_odds[index] = model.log_odds(examples[int(index)].features)
     return log_odds
 
 

@@ -53,7 +53,7 @@ def versions_without_remarks(text: str, presets: tuple[str, ...]) -> Iterator[st
     remarks = sorted((index for index, value in log_odds.items() if value > _MIN_LOG_ODDS), key=lambda index: -log_odds[index])
     left_out = [remarks[:size] for size in range(1, len(remarks) + 1)] + [[index] for index in remarks[1:]]
     for indices in left_out[:_MAX_VERSIONS]:
-        version = _without(text, segments, frozenset(indices), presets)
+        version = _without(segments, frozenset(indices), presets)
         if version is not None:
             yield version
 
@@ -67,7 +67,7 @@ def _is_binding(text: str) -> bool:
     return _BINDING.search(text) is not None
 
 
-def _without(text: str, segments: Sequence[Segment], left_out: frozenset[int], presets: tuple[str, ...]) -> str | None:
+def _without(segments: Sequence[Segment], left_out: frozenset[int], presets: tuple[str, ...]) -> str | None:
     """Return an instruction without some of its segments; None if the rest is incomplete or refers to them."""
     kept = [index for index in range(len(segments)) if index not in left_out]
     said = " ".join(segments[index].text for index in kept)
@@ -81,8 +81,13 @@ def _without(text: str, segments: Sequence[Segment], left_out: frozenset[int], p
             follows_mark = segments[index - 1].mark != ""
             if refers_back(own) or not (follows_mark or opens_request(own, presets)):
                 return None
-    parts = [
-        segments[index].text + (text[segments[index].end : segments[index + 1].start] if index + 1 < len(segments) else "")
-        for index in kept
-    ]
-    return "".join(parts).strip(" ,;:-–—")
+    following = [*kept[1:], len(segments)]
+    parts = [segments[i].text + _strongest_mark(segments[i:after]) for i, after in zip(kept, following, strict=True)]
+    return " ".join(parts).strip(" ,;:-–—")
+
+
+def _strongest_mark(segments: Sequence[Segment]) -> str:
+    """Return the mark that separates what comes before some segments from what comes after: one that ends a sentence, if any."""
+    marks = [segment.mark for segment in segments if segment.mark]
+    mark = next((mark for mark in marks if set(mark) & set(".!?;")), marks[0] if marks else "")
+    return f" {mark}" if mark[:1] in {"-", "–", "—"} else mark
