@@ -20,7 +20,7 @@ INSET = 0.02
 """Width of the margin on each side of a view that need not be covered, as a fraction of the view."""
 
 MIN_CAP_PX = 14.0
-"""Minimum height of capital letters in pixels. Smaller text is illegible."""
+"""Minimum height of capital letters in pixels. Smaller text does not count as evidence, although ground truth reads some of it."""
 
 _GRID = 9
 """Number of reference directions along each dimension of a view."""

@@ -15,7 +15,7 @@ from itertools import pairwise, product
 import numpy as np
 from numpy.typing import NDArray
 
-from scope_ptz.bench.scoring.coverage import box_directions
+from scope_ptz.bench.scoring.coverage import MIN_CAP_PX, box_directions
 from scope_ptz.bench.scoring.episode import CameraPosition, FrameGeometry
 from scope_ptz.bench.tasks.task import Item
 from scope_ptz.geometry import Equirectangular, Perspective, Pose, pan_tilt_deg
@@ -23,8 +23,6 @@ from scope_ptz.simulator.actors import Appearance, appearances, may_be_visible
 from scope_ptz.simulator.models import SceneText
 from scope_ptz.simulator.pack import Scene
 from scope_ptz.simulator.truth import (
-    MAX_READING_ANGLE_DEG,
-    MIN_CAP_HEIGHT_PX,
     MIN_UNHIDDEN_FRACTION,
     MIN_VISIBLE_FRACTION,
     MIN_VISIBLE_PX,
@@ -34,6 +32,9 @@ from scope_ptz.simulator.truth import (
     view_truth,
 )
 from scope_ptz.taskgen.facts.kinds import INCOMPLETE_CATEGORIES, TEXT_CATEGORIES, UNRECOGNISABLE_CATEGORIES, Kind, SceneThing
+
+_MAX_READING_ANGLE_DEG = 55.0
+"""Text that a task is about is larger (``MIN_CAP_PX``), and seen less from the side, than some text that ground truth reads."""
 
 TASK_CAMERA = FrameGeometry(1280, 720)
 """The camera for which tasks are created and validated."""
@@ -277,7 +278,7 @@ class RobustTruth:
         ids = frozenset.intersection(*(frozenset(names) for names in legible_ids))
         for later_s in SOON_S if ids and self.passing_actors else ():
             later_truth = self.read_truth(self.scene, self.viewpoint, self.projection, self.time_s + later_s)
-            ids &= {text.text.id for text in later_truth.legible}
+            ids &= {text.text.id for text in later_truth.texts if is_legible(text)}
         return tuple(sorted((t for t in self.samples[0].texts if t.text.id in ids), key=lambda t: (round(t.box[1], 2), t.box[0])))
 
     def texts_on(self, thing: SceneThing) -> tuple[TextSighting, ...] | None:
@@ -285,7 +286,7 @@ class RobustTruth:
         part_ids = ids_with_parts(self.scene, thing.id)
         legible_ids = {t.text.id for t in self.legible}
         shown = [t for t in self.samples[0].texts if t.text.parent in part_ids and t.unhidden_fraction > 0.3]
-        if any(t.text.id not in legible_ids and t.cap_height_px >= MIN_CAP_HEIGHT_PX * 0.35 for t in shown):
+        if any(t.text.id not in legible_ids and t.cap_height_px >= MIN_CAP_PX * 0.35 for t in shown):
             return None
         return tuple(t for t in self.legible if t.text.parent in part_ids)
 
@@ -360,10 +361,10 @@ def is_visible(sighting: Sighting, scale: float = 1.0) -> bool:
 
 
 def is_legible(text: TextSighting, scale: float = 1.0) -> bool:
-    """Return whether text meets the definition of legible. A ``scale`` above 1 makes all thresholds stricter."""
+    """Return whether text is as legible as tasks demand. A ``scale`` above 1 makes all thresholds stricter."""
     return (
-        text.cap_height_px >= MIN_CAP_HEIGHT_PX * scale
-        and text.angle_deg <= min(MAX_READING_ANGLE_DEG / scale, 85.0)
+        text.cap_height_px >= MIN_CAP_PX * scale
+        and text.angle_deg <= min(_MAX_READING_ANGLE_DEG / scale, 85.0)
         and text.unhidden_fraction >= 1 - (1 - MIN_UNHIDDEN_FRACTION) / scale
     )
 
