@@ -50,6 +50,9 @@ _NAMED_AMOUNT = re.compile(rf"\d|\b(?:{_NUMBERS}|bit|lot|touch|quarter turn)\b",
 _NO_CLOSE_UP = re.compile(r"\b(?:without (?:moving|zooming)|(?:don['’]?t|do not) (?:move|zoom)|no zoom)\b", re.IGNORECASE)
 """Words with which a picture of a thing is a picture of the current view."""
 
+_IMPOSSIBLE = "I cannot"
+"""The beginning of the questions about requests that were understood but cannot be carried out."""
+
 _NO = re.compile(r"(?:no|nope|nah|no,? thanks|no,? thank you|no,? it['’]s fine|nothing)[.!]*", re.IGNORECASE)
 
 
@@ -98,26 +101,28 @@ def understand(instruction: str, presets: Sequence[str] | None, conversation: Se
         return Understanding(clarification=question)
     if continuation.corrects:
         return understanding
-    return _read_without_remarks(said, preset_names, conversation) or understanding
+    return _read_without_remarks(said, understanding, preset_names, conversation)
 
 
 def _read_without_remarks(
-    said: str, preset_names: tuple[str, ...] | None, conversation: Sequence[PastTurn]
-) -> Understanding | None:
-    """Return the steps of a shorter version of a text that was not understood; None if no version is.
+    said: str, whole_text: Understanding, preset_names: tuple[str, ...] | None, conversation: Sequence[PastTurn]
+) -> Understanding:
+    """Return the steps of a shorter version of a text that was not understood; if no version is, the question about the whole text.
 
     Remarks with a known form may name directions and amounts ("Dave panned left 20 yesterday"). Those that only the model
-    recognises may not: the steps must account for the whole text.
+    recognises may not: the steps must account for the whole text. A question with a reason, such as "I cannot wait for something to
+    happen", stands.
     """
     whole, presets = written_out(said), preset_names or ()
     for shorter in shorter_versions(whole, presets):
         if (understanding := _read(shorter, preset_names, conversation)).steps:
             return understanding
-    for shorter in versions_without_remarks(whole, presets):
+    is_impossible = (whole_text.clarification or "").startswith(_IMPOSSIBLE)
+    for shorter in versions_without_remarks(whole, presets) if not is_impossible else ():
         steps = (understanding := _read(shorter, preset_names, conversation)).steps
         if steps and not (objection_to_loss(whole, steps, presets) or objection_to_forbidden(whole, steps)):
             return understanding
-    return None
+    return whole_text
 
 
 def _read(said: str, preset_names: tuple[str, ...] | None, conversation: Sequence[PastTurn]) -> Understanding:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 
+from scope_ptz.planner.grammar.lexing.lexer import lexemes_of
+from scope_ptz.planner.grammar.parsing.parts.clause import VERBS
 from scope_ptz.planner.grammar.parsing.remark_model.features import features_of
 from scope_ptz.planner.grammar.parsing.remark_model.model import remark_model
 from scope_ptz.planner.grammar.parsing.remark_model.segments import Segment, segments_of
@@ -29,9 +31,10 @@ _EVENT = re.compile(r"^(?:before|after) (?:i|we|he|she|they|it|the|my|our|someon
 
 _BINDING = re.compile(
     r"^(?:left|right|up|down|in|out)\b"
-    r"|\b(?:don['’]?t|do not|not|no|never|nor|without|instead|unless|if|until|till|otherwise|else|whichever|either|only|except"
-    r"|rather|wait|actually|cancel|forget|ignore|scratch|stop|mind|mean|first|then|next|before|after|than|same|both|each|every"
-    r"|again|last one|that one|lot|bit|touch|twice|zoom|pan|tilt)\b",
+    r"|\b(?:don['’]?t|do not|not|no|never|nor|without|instead|unless|if|when(?! you (?:get|have|can))|until|till|otherwise|else"
+    r"|whichever|either|only|except|rather|wait|actually|cancel|forget|ignore|scratch|stop|mind|mean|first|then|next|before|after"
+    r"|than|same|both|each|every|again|whole|entire|full|everywhere|anywhere|(?:last|that|this|other) one|lot|bit|touch|twice"
+    r"|zoom|pan|tilt)\b",
     re.IGNORECASE,
 )
 """Words with which a segment may change what the others ask for, so that it must not be left out."""
@@ -48,7 +51,7 @@ def versions_without_remarks(text: str, presets: tuple[str, ...]) -> Iterator[st
     log_odds = {
         index: remark_model().log_odds(features_of(segments, index, presets))
         for index, segment in enumerate(segments)
-        if not _is_binding(segment.text)
+        if not _is_binding(segment.text, presets)
     }
     remarks = sorted((index for index, value in log_odds.items() if value > _MIN_LOG_ODDS), key=lambda index: -log_odds[index])
     left_out = [remarks[:size] for size in range(1, len(remarks) + 1)] + [[index] for index in remarks[1:]]
@@ -58,8 +61,11 @@ def versions_without_remarks(text: str, presets: tuple[str, ...]) -> Iterator[st
             yield version
 
 
-def _is_binding(text: str) -> bool:
-    """Return whether a segment may restrict, forbid, repeat or take back something."""
+def _is_binding(text: str, presets: tuple[str, ...]) -> bool:
+    """Return whether a segment begins with a command, or may restrict, forbid, repeat or take back something."""
+    first = next((lexeme for lexeme in lexemes_of(text, presets) if not lexeme.has("FILLER", "AND", "BUT")), None)
+    if first is not None and first.has(*VERBS, "TELL", "HOWMANY"):
+        return True
     if (negated := _NEGATED_STATEMENT.match(text)) is not None:
         text = text[negated.end() :]
     elif (event := _EVENT.match(text)) is not None:
