@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -21,26 +23,24 @@ def log_odds(text: str) -> list[float]:
 
 
 @given(st.text(max_size=80))
-def test_segments_contain_all_words(text: str) -> None:
+def test_segments_are_parts_of_the_text_in_order(text: str) -> None:
     segments = segments_of(text)
     assert all(text[segment.start : segment.end] == segment.text for segment in segments)
-    assert "".join(text.split()).startswith("".join("".join(s.text.split()) for s in segments[:1]))
-    assert all(before.end <= after.start for before, after in zip(segments, segments[1:], strict=False))
+    assert all(before.end <= after.start for before, after in pairwise(segments))
 
 
 @pytest.mark.parametrize(
-    ("instruction", "remark"),
+    ("instruction", "request", "remark"),
     [
-        ("Tilt up a lot, I want the top two floors in the picture.", 1),
-        ("Follow the lady with the brown dog, dogs are banned in here", 1),
-        ("The wind has dropped, count the cars please", 0),
-        ("Zoom in 2x; the horizon is currently cut off.", 1),
+        ("Tilt up a lot, I want the top two floors in the picture.", 0, 1),
+        ("Follow the lady with the brown dog, dogs are banned in here", 0, 1),
+        ("The wind has dropped, count the cars", 1, 0),
+        ("Zoom in 2x; the horizon is currently cut off.", 0, 1),
     ],
 )
-def test_remarks_have_higher_log_odds_than_requests(instruction: str, remark: int) -> None:
+def test_remarks_have_higher_log_odds_than_requests(instruction: str, request: int, remark: int) -> None:
     found = log_odds(instruction)
-    assert found[remark] > 0
-    assert found.index(max(found)) == remark
+    assert found[remark] > 0 > found[request]
 
 
 def test_the_words_of_presets_are_no_features() -> None:
