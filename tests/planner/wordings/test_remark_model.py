@@ -30,7 +30,7 @@ def test_segments_are_parts_of_the_text_in_order(text: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("instruction", "request", "remark"),
+    ("instruction", "command", "remark"),
     [
         ("Tilt up a lot, I want the top two floors in the picture.", 0, 1),
         ("Follow the lady with the brown dog, dogs are banned in here", 0, 1),
@@ -38,9 +38,9 @@ def test_segments_are_parts_of_the_text_in_order(text: str) -> None:
         ("Zoom in 2x; the horizon is currently cut off.", 0, 1),
     ],
 )
-def test_remarks_have_higher_log_odds_than_requests(instruction: str, request: int, remark: int) -> None:
+def test_remarks_have_higher_log_odds_than_requests(instruction: str, command: int, remark: int) -> None:
     found = log_odds(instruction)
-    assert found[remark] > 0 > found[request]
+    assert found[remark] > 0 > found[command]
 
 
 def test_the_words_of_presets_are_no_features() -> None:
