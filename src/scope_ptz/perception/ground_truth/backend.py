@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from scope_ptz.perception.ground_truth.answers.text_regions import TextRegion
     from scope_ptz.perception.ground_truth.view import Thing, View
 
-GROUND_TRUTH_VERSION = 4
+GROUND_TRUTH_VERSION = 5
 """The version of ground-truth perception, which traces record. It increases when replies to the same request and view change."""
 
 TruthReader = Callable[[Scene, str, Projection, float], ViewTruth]
