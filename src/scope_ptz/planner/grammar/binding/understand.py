@@ -36,6 +36,7 @@ from scope_ptz.planner.grammar.parsing.instruction_parser import MAX_CHARS, Pars
 from scope_ptz.planner.grammar.parsing.remark_model.versions import versions_without_remarks
 from scope_ptz.planner.grammar.parsing.rewording.plain_text import written_out
 from scope_ptz.planner.grammar.parsing.rewording.shorter_versions import shorter_versions
+from scope_ptz.planner.grammar.parsing.rewording.withdrawn_parts import takes_back_unclearly
 
 if TYPE_CHECKING:
     from scope_ptz.planner.base import PastTurn
@@ -110,6 +111,8 @@ def _read_without_remarks(
     recognises may not: the steps must account for the whole text.
     """
     whole, presets = written_out(said), preset_names or ()
+    if takes_back_unclearly(whole, presets):
+        return None
     for shorter in shorter_versions(whole, presets):
         if (understanding := _read(shorter, preset_names, conversation)).steps:
             return understanding
