@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from scope_ptz.english import is_plural
 from scope_ptz.english.grammar.lexicon import lexicon
 from scope_ptz.english.grammar.parts_of_speech import verb_form
 from scope_ptz.english.grammar.questions.recognition import looks_like_description
+from scope_ptz.planner.grammar.execution.answer_sentences import noun
 from scope_ptz.planner.grammar.instruction_tree import (
     Ask,
     AtPlaces,
@@ -40,7 +42,7 @@ _LOOKING = r"(got|HAVEV|TELL|TELL-ING|COUNT|COUNT-ING|SHOW|TAKE|DESCRIBE|READ|SE
 
 
 _SEEING = (
-    r"(BE (there)? VISIBLE?|BE there|(can|do|did|could) SELF (ADVERB|FILLER)* (SEE|COUNT|READ|make out|get)|there BE|SELF "
+    r"(BE (there)? VISIBLE?|BE there|(can|do|did|could) SELF (ADVERB|FILLER)* (SEE|COUNT|READ|FIND|make out|get)|there BE|SELF "
     r"(can|could|do|have)? (SEE|have|got (up|out|over)?)|HAVEV SELF (got (up|out|over)?)?|do we have|"
     r"can be SEE-ED|can be seen|BE VISIBLE|"
     r"are we (SEE-ING|AIM-ING at)|you are SEE-ING|exist|VISIBLE|BE|in total|in all|(what|that)? SELF (can)? (SEE|FIND)|"
@@ -142,8 +144,12 @@ def _counted(
     if full_match("_+ in (AMOUNTISH|DET)* NUM (MINUTES|HOURS)", rest):
         return Unclear("I cannot wait. Shall I count them now?")  # "count the vans in ten minutes"
     rest = trimmed(rest, "FILLER", "COMMA", "ALSO")
+    if source.has_moved and (turned := full_match("(?P<thing>_+) (over)? (on|in) (this|that) (SIDE|direction)", rest)) is not None:
+        rest = turned["thing"]  # "turn around and count the tents on that side"
     while len(rest) > 1 and rest[-1].word in {"too", "as_well", "also", "total"}:
         rest = rest[:-1]
+    if (until_now := full_match("(?P<thing>_+) so far", rest)) is not None:
+        rest = until_now["thing"]  # "how many vans are there so far?"
     rest, inner = without_view(trimmed(without_sum(rest), "FILLER", "COMMA", "AMOUNTISH"))
     view = view or inner
     if full_match(
@@ -162,7 +168,7 @@ def _counted(
     ):
         things = things_of(source, match["thing"])
         if things:
-            return Count(things, view)
+            return Count(_all_of(things, match["thing"]), view)
     if how is not None and rest[0].has("PREP") and (places := places_of(source, rest)):
         return AtPlaces(places, (Count((Thing("people"),), view),))  # "how many on the boardwalk?"
     if how is not None and match_start("(in|on|at) DET FREE", rest):
@@ -170,8 +176,15 @@ def _counted(
     if how is not None and (those := _count_with_predicate(source, rest, view)):
         return those
     if things := things_of(source, rest):
-        return Count(things, view)
+        return Count(_all_of(things, rest), view)
     return None
+
+
+def _all_of(things: tuple[Thing, ...], lexemes: Sequence[Lexeme]) -> tuple[Thing, ...]:
+    """Return the things to count, in the plural for "every waste bin"."""
+    if len(things) != 1 or not things[0].text or not match_start("(FILLER)* (each|every|each_of|EVERY) FREE", lexemes):
+        return things
+    return (replace(things[0], text=noun(things[0].text, 2)),)
 
 
 def _with_posture(rest: Sequence[Lexeme]) -> Match | None:

@@ -142,7 +142,11 @@ WITHDRAWALS = (
         "",
     ),
     (r"[,;]? (?:and|but) (?:do not|don['’]?t) (?:follow|track) (?:anybody|anyone|anything)\W*$", ""),
-    (r",? but (?:do not|don['’]?t) move the camera while (?:doing|you do) (?:it|so|that)\W*$", " without moving the camera"),
+    (
+        r"[,.;]? (?:but |and )?(?:please )?(?:do not|don['’]?t) move the camera while (?:doing|you do) "
+        r"(?:it|so|that)(?=\W*$|[,.;])",
+        " without moving the camera",
+    ),
 )
 """Patterns with the words that replace them."""
 

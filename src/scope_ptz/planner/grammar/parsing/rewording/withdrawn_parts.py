@@ -32,10 +32,9 @@ _FORMS = (
     rf"(do|DOV) not (bother)? (?P<verb>TRACK|ZOOM|COUNT|SNAP|PAN|TILT|TAKE|READ|FIND|TRACK-ING|ZOOM-ING|COUNT-ING|PAN-ING|TILT-ING)"
     rf" (in|IN|on)* (PRON|it|him|them|{_OBJECT})?",
 )
+_SIGNALS = f"(?P<signal>({_SIGNAL}) (({_SIGNAL})|{_PAUSES.rstrip('*')})*)"
 _TAKING_BACK = tuple(
-    f"(?P<pause>({_ENDS})) {_PAUSES} (?P<signal>({_SIGNAL}) (({_SIGNAL})|{_PAUSES.rstrip('*')})*)? (please)? {form} (please|FILLER)* "
-    rf"(?=({_ENDS}|AND)|\Z)"
-    for form in _FORMS
+    rf"(?P<pause>({_ENDS})) {_PAUSES} {_SIGNALS}? (please)? {form} (please|FILLER)* (?=({_ENDS}|AND)|\Z)" for form in _FORMS
 )
 _TURNS = {"PAN": ("PAN", "LEFT", "RIGHT"), "TILT": ("TILT", "UP", "DOWN")}
 _KINDS = ("PAN", "TILT", "ZOOM", "COUNT", "TRACK", "READ", "FIND", "PICTURE")
