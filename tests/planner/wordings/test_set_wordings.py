@@ -65,7 +65,6 @@ def test_states_that_are_asked_about(instruction: str, expected: str) -> None:
         ("how many yellow buoys, look right the way round", "yellow buoys"),
         ("Look at everything around you, the full circle, and tell me how many vans there are", "vans"),
         ("do a full look round and tell me how many guards you see", "guards"),
-        ("Please count every waste bin you can find in the entire scene", "waste bins"),
     ],
 )
 def test_counts_in_the_whole_scene(instruction: str, things: str) -> None:

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from scope_ptz.english import is_plural
 from scope_ptz.english.grammar.lexicon import lexicon
 from scope_ptz.english.grammar.parts_of_speech import verb_form
 from scope_ptz.english.grammar.questions.recognition import looks_like_description
-from scope_ptz.planner.grammar.execution.answer_sentences import noun
 from scope_ptz.planner.grammar.instruction_tree import (
     Ask,
     AtPlaces,
@@ -168,7 +166,7 @@ def _counted(
     ):
         things = things_of(source, match["thing"])
         if things:
-            return Count(_all_of(things, match["thing"]), view)
+            return Count(things, view)
     if how is not None and rest[0].has("PREP") and (places := places_of(source, rest)):
         return AtPlaces(places, (Count((Thing("people"),), view),))  # "how many on the boardwalk?"
     if how is not None and match_start("(in|on|at) DET FREE", rest):
@@ -176,15 +174,8 @@ def _counted(
     if how is not None and (those := _count_with_predicate(source, rest, view)):
         return those
     if things := things_of(source, rest):
-        return Count(_all_of(things, rest), view)
+        return Count(things, view)
     return None
-
-
-def _all_of(things: tuple[Thing, ...], lexemes: Sequence[Lexeme]) -> tuple[Thing, ...]:
-    """Return the things to count, in the plural for "every waste bin"."""
-    if len(things) != 1 or not things[0].text or not match_start("(FILLER)* (each|every|each_of|EVERY) FREE", lexemes):
-        return things
-    return (replace(things[0], text=noun(things[0].text, 2)),)
 
 
 def _with_posture(rest: Sequence[Lexeme]) -> Match | None:
