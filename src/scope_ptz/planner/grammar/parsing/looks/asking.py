@@ -60,7 +60,7 @@ def _verbless_question(source: Source, lexemes: Sequence[Lexeme], *, has_questio
     if (
         not has_question_mark
         or search(_NO_TOPIC, lexemes)
-        or not match_start("(DET|EVERY)? (FREE|PRESET){1,3}", lexemes)
+        or not match_start("(DET|EVERY)? FREE{1,3}", lexemes)
         or search("SELF|NUM DEG|COMMA", lexemes)
     ):
         return None
