@@ -10,7 +10,7 @@ from scope_ptz.planner.grammar.binding.embedded_questions import direct_question
 from scope_ptz.planner.grammar.binding.noun_heads import is_ranked
 from scope_ptz.planner.grammar.binding.preset_matching import match_exactly
 from scope_ptz.planner.grammar.lexing.lexer import lexemes_of
-from scope_ptz.planner.grammar.parsing.parts.patterns import full_match
+from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, search
 
 _BARE_WHO_OR_WHAT = re.compile(r"(?:who|what)(?:['’]s| is| are)\?*", re.IGNORECASE)
 _WAITING = re.compile(r"(when(?!(?:['’]s| (?:do|does|did|is|are|will|was|were))\b)|once|as soon as|whenever)\b", re.IGNORECASE)
@@ -86,6 +86,11 @@ def bare_superlative(question: str) -> str:
 def is_request_to_describe(question: str) -> bool:
     """Return whether the question is the bare request "describe", "describe each view", "what is in front of you?" or the like."""
     return bool(_DESCRIBE.fullmatch(question.strip()) or full_match(_BEFORE_CAMERA, lexemes_of(question)))
+
+
+def lacks_noun(text: str) -> bool:
+    """Return whether a count at a place names no things, but the sentence before may: "birds again. How many on the taxiway?"."""
+    return search("(STOP|COLON|DASH) (FILLER|COMMA)* HOWMANY (FILLER)* (on|in|at) (DET)? _", lexemes_of(text)) is not None
 
 
 def is_request_for_total(question: str) -> bool:

@@ -14,7 +14,7 @@ from scope_ptz.planner.grammar.binding.continuations import NOTHING_DONE, contin
 from scope_ptz.planner.grammar.binding.followups import followup_of, question_about_topic
 from scope_ptz.planner.grammar.binding.names import UnresolvedError
 from scope_ptz.planner.grammar.binding.offtopic import REFUSAL, is_harmful
-from scope_ptz.planner.grammar.binding.question_text import is_request_for_total
+from scope_ptz.planner.grammar.binding.question_text import is_request_for_total, lacks_noun
 from scope_ptz.planner.grammar.binding.resolver import Resolver
 from scope_ptz.planner.grammar.binding.small_talk import (
     NEVER_MIND,
@@ -36,6 +36,7 @@ from scope_ptz.planner.grammar.parsing.instruction_parser import MAX_CHARS, Pars
 from scope_ptz.planner.grammar.parsing.remark_model.versions import versions_without_remarks
 from scope_ptz.planner.grammar.parsing.rewording.plain_text import written_out
 from scope_ptz.planner.grammar.parsing.rewording.shorter_versions import shorter_versions
+from scope_ptz.planner.grammar.parsing.rewording.withdrawn_parts import takes_back_unclearly
 
 if TYPE_CHECKING:
     from scope_ptz.planner.base import PastTurn
@@ -94,6 +95,8 @@ def understand(instruction: str, presets: Sequence[str] | None, conversation: Se
     if (question := continuation.question or objection_to_wording(written_out(instruction))) is not None:
         return Understanding(clarification=question)
     said = continuation.text
+    if not conversation and lacks_noun(said):
+        return Understanding(clarification="How many of what? Please name the things to count.")
     understanding = _read(said, preset_names, conversation)
     if understanding.steps:
         return Understanding((ast.Instead(understanding.steps),)) if continuation.corrects else understanding
@@ -114,6 +117,8 @@ def _read_without_remarks(
     happen", stands.
     """
     whole, presets = written_out(said), preset_names or ()
+    if takes_back_unclearly(whole, presets):
+        return None
     for shorter in shorter_versions(whole, presets):
         if (understanding := _read(shorter, preset_names, conversation)).steps:
             return understanding

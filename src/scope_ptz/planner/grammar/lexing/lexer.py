@@ -136,6 +136,8 @@ def _with_preset_words(words: list[str], presets: tuple[str, ...]) -> list[str]:
             wrong = [j for j, (a, b) in enumerate(zip(said, name, strict=True)) if a != b]
             if len(wrong) != 1 or len(name[wrong[0]]) < _MIN_CHARS_OF_PRESET_WORD or is_english(said[wrong[0]]):
                 continue
+            if read_number(said[wrong[0] :]).used:
+                continue  # "half a minute" does not name the preset "hall-a"
             if within_one_edit(said[wrong[0]], name[wrong[0]]):
                 out[i + wrong[0]] = name[wrong[0]]
     return out

@@ -138,7 +138,11 @@ class ClauseSequenceReader:
         return steps
 
     def _another_picture(self, clause: Clause) -> tuple[Step, ...] | None:
-        """Return the steps of "another one 20 degrees further to the right" after a picture; None for other clauses."""
+        """Return the steps of "another one 20 degrees further right" or "another one at the gate" after a picture, else None."""
+        placed = full_match("(FILLER)* (DET)? (ANOTHER|one) (one|PICTURE)? (of|at|from|in|on) (?P<places>_+)", clause.lexemes)
+        is_pictured = self.last_step == Snap() or (isinstance(self.last_step, AtPlaces) and self.last_step.body == (Snap(),))
+        if is_pictured and placed is not None and (places := places_of(self.reader.source, placed["places"])):
+            return (AtPlaces(places, (Snap(),)),)
         match = full_match("(FILLER)* (DET)? ANOTHER (one|PICTURE)? (at|from)? (?P<turn>(NUM DEG?|LITTLE|LOT) _+)", clause.lexemes)
         if not isinstance(self.last_step, Snap) or match is None or not any(x.has(*DIRECTIONS) for x in match["turn"]):
             return None

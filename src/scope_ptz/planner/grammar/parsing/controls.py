@@ -80,6 +80,8 @@ def control_step(source: Source, lexemes: Sequence[Lexeme]) -> tuple[Step, ...] 
     is_told = full_match(f"(FILLER)* (CARRY|TELL|SHOW) (me|us)* (both|DET|SELF|all)+ {numbers} (FILLER)*", lexemes)
     if is_told or full_match(f"(FILLER|WRAPPER|SELF|want|need)* (both|all) (the)? {numbers} (FILLER)*", lexemes):
         return (Report(),)  # "... and give me both numbers"
+    if full_match("(DET|EXACTLY|FILLER)* (NUMBERWORD|number|numbers|count|total|figure) (only|alone) (FILLER)*", lexemes):
+        return (Report(),)  # "how many vans? Number only."
     if full_match("(FILLER)* (check|TELL|AIM|look at|SHOW) (at)? both (of (them|PRON)|PRESETNOUN|presets)? (FILLER)*", lexemes):
         return (Report(),)  # "are there more cars at the gate or in the yard? Check both."
     if full_match("(look|TELL|AIM|have_a_look|take_a_look) (FILLER|there|here|now|please)*", lexemes) and any(
@@ -131,7 +133,10 @@ def _forbid_step(lexemes: Sequence[Lexeme]) -> tuple[Step, ...] | None:
         return None
     if search("(past|beyond|over|above|under|below|MORE|MORETHAN|FEWERTHAN|further) (than)? NUM", rest):
         raise NotUnderstoodError(lexemes)  # "zoom in, but don't go past 3x"
-    no_picture = "(FILLER|DET|any|MORE|need for)* PICTURE (FILLER|BE|needed|required|wanted|necessary|allowed|(at|of|on|for) _+)*"
+    no_picture = (
+        "(FILLER|DET|any|MORE|need for)* PICTURE "
+        "(FILLER|BE|needed|required|wanted|necessary|allowed|though|either|(at|of|on|for) _+)*"
+    )
     if full_match(no_picture, rest):
         return (Forbid(),)  # "go to the gate, no photos"
     if full_match(_FOLLOWING_ANYONE, rest):

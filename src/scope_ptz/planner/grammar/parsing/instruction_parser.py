@@ -15,7 +15,8 @@ from scope_ptz.planner.grammar.parsing.rewording.contrasts import without_denial
 from scope_ptz.planner.grammar.parsing.rewording.phrases import reworded
 from scope_ptz.planner.grammar.parsing.rewording.plain_text import plainer, without_asides
 from scope_ptz.planner.grammar.parsing.rewording.relayed import relayed
-from scope_ptz.planner.grammar.parsing.rewording.repairs import repaired, unresolved_editing
+from scope_ptz.planner.grammar.parsing.rewording.repairs import Repaired, repaired, unresolved_editing
+from scope_ptz.planner.grammar.parsing.rewording.withdrawn_parts import without_withdrawn_parts
 from scope_ptz.planner.grammar.parsing.segments.order import in_order
 from scope_ptz.planner.grammar.parsing.segments.segmentation import clauses_of
 from scope_ptz.planner.grammar.parsing.segments.settings_first import with_settings_first
@@ -63,9 +64,10 @@ def _parse_as_written(text: str, presets: tuple[str, ...]) -> Parsed:
     lexemes = lexemes_of(text, presets)
     if not lexemes or is_too_complex(lexemes):
         return Parsed(text, None)
-    corrected = without_denials(repaired(with_contractions(reworded(lexemes)), text))
+    said, unclear = without_withdrawn_parts(Repaired(with_contractions(reworded(lexemes)), text))
+    corrected = without_denials(repaired(said.lexemes, said.text))
     lexemes, text = corrected.lexemes, corrected.text
-    if unresolved := unresolved_editing(lexemes):
+    if unresolved := unclear or unresolved_editing(lexemes):
         return Parsed(text, None, _quoted(text, unresolved))
     try:
         clauses = in_order(with_settings_first(clauses_of(lexemes)))

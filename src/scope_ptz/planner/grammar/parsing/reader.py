@@ -73,6 +73,10 @@ _THING_MOVES = (
 """A statement about a thing that moves, which is not a command: "things are moving up here"."""
 
 _ROLL = "(FILLER)* roll (DET|CAMERA|VIEWNOUN|PICTURE|it)* (LEFT|RIGHT|NUM|by) _*"
+_ROLLED_PICTURE = "(FILLER)* (TURN|CARRY|roll|SWITCH) (DET|SELF)? (PICTURE|VIEWNOUN|image|screen) (FILLER|AROUND)* (LEFT|RIGHT) _*"
+_ROLLS = frozenset({"clockwise", "anticlockwise", "counterclockwise", "cw", "ccw", "acw"})
+"""Ways to turn about the line of sight if it is the picture that turns, not the camera: "rotate the picture clockwise"."""
+
 _TO_CLOCK_POSITION = (
     f"(AIM|TURN|PAN|TILT|CARRY|SWITCH|ZOOM|SHOW|FIND|to|at|on|for|in|DET|SELF|GLUE|CAMERA|it|FILLER)* {CLOCK_POSITION} "
     f"(PRESETNOUN|SIDE|direction|FILLER)*"
@@ -306,7 +310,8 @@ class Reader:
         failed: NotUnderstoodError | None = None
         if full_match(_RECORDING, lexemes):
             return (Unclear("I take single pictures and cannot record. Shall I take a picture?"),)
-        if full_match(_ROLL, lexemes):
+        rolls = full_match(_ROLLED_PICTURE, lexemes) is not None and any(x.word in _ROLLS for x in lexemes)
+        if rolls or full_match(_ROLL, lexemes):
             return (Unclear("I can pan, tilt and zoom, but not roll. Which way shall I turn, and how far?"),)
         if full_match(_TO_CLOCK_POSITION, lexemes) and not has_question_mark:
             return (special_turn(lexemes) or Unclear("Which way shall I turn, and how far?"),)

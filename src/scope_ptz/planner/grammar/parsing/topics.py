@@ -15,7 +15,8 @@ from scope_ptz.planner.grammar.parsing.parts.preset_refs import places_of
 from scope_ptz.planner.grammar.parsing.parts.scopes import split_trailing_place, without_view
 
 _BARE_COUNT = (
-    r"(FILLER|FIRSTLY|COMMA|and|AND|TELL|me|us)* (HOWMANY|(what|which|WHQ) (number|total|count)|"
+    r"(FILLER|FIRSTLY|COMMA|and|AND|TELL|me|us|FULL)* (HOWMANY|"
+    r"(DET|EXACTLY)* (NUMBERWORD|number|count|total) (only|alone)|(what|which|WHQ) (number|total|count)|"
     r"COUNT (EVERY|PRON|FREE)* (kind|sort|type)?|"
     r"(WHQ BE)? (DET)? (count|number|total|headcount|tally)) "
     r"(of (PRON|those|each)|PRON|EVERY|BE there|there BE|are there|VISIBLE|SELF|SEE|can|do|would|say|TELL|reckon|"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from scope_ptz.english import is_plural
+from scope_ptz.english import COLOURS, is_plural
 from scope_ptz.planner.grammar.execution.answer_sentences import with_lower_initial
 from scope_ptz.planner.grammar.instruction_tree import (
     Ask,
@@ -96,6 +96,20 @@ def _with_options_at_place(source: Source, lexemes: Sequence[Lexeme]) -> Step | 
     if match is None or not places or search(_NO_TOPIC, rest):
         return None
     return AtPlaces(places, (Ask(f"{text_of(source, rest)}: {text_of(source, match['options'])}?"),))
+
+
+def _choice(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
+    """Read "floor by the drain, wet or dry?" as a question that names a thing and its possible states; None for other clauses."""
+    match = full_match("(DET)? (?P<thing>(FREE|PRESET) _*) COMMA (?P<options>(?P<one>_) OR (?P<other>_))", lexemes)
+    if match is None or not all(x.word in _STATES | COLOURS for x in (*match["one"], *match["other"])):
+        return None
+    rest, places = split_trailing_place(source, match["thing"])
+    if search(f"{_NO_TOPIC}|COMMA|BE|HAVEV", rest) or thing_of(source, rest) is None:
+        return None
+    head = next((x.word for x, after in zip(rest, (*rest[1:], None), strict=True) if after is None or after.has("PREP")), "")
+    subject, options = with_lower_initial(text_of(source, rest)), text_of(source, match["options"])
+    asked = Ask(f"{'Are' if is_plural(head) else 'Is'} the {subject} {options}?")
+    return AtPlaces(places, (asked,)) if places else asked
 
 
 def _described(source: Source, lexemes: Sequence[Lexeme], view: View | None) -> Step:
@@ -220,6 +234,10 @@ def _question_without_tell_me(
         )
     if not has_question_mark and match_start("(FILLER|COMMA)* (NOONE|nothing)", lexemes):
         raise NotUnderstoodError(lexemes)  # "nothing moving over there" is a remark or a condition, not a question
+    if not has_question_mark and full_match(
+        "how _{1,3} (CARRY|HAVEV|DOV|had|did|left|liked|wanted|set) (it|this|that|them)", lexemes
+    ):
+        raise NotUnderstoodError(lexemes)  # "it was better how Margaret had it" refers to a way of doing it
     if is_question(lexemes) and not _is_personal(lexemes):
         is_indirect = not has_question_mark and (lexemes[0].has("WHQ") or lexemes[0].word == "how")
         return Ask(text_of(source, lexemes) + end, scope, embedded=is_indirect)  # "I need to know what colour it is"
@@ -238,6 +256,10 @@ def _question_without_tell_me(
         and not search(_NO_TOPIC, lexemes)
     ):
         return Ask(text_of(source, lexemes) + "?", scope)  # "display case: open or shut?"
+    if (choice := _choice(source, lexemes)) is not None:
+        return choice
+    if (yes_or_no := full_match("(?P<body>_+) (COMMA)? OR (not|NOT)", lexemes)) and yes_or_no["body"][-1].word in _STATES:
+        lexemes, has_question_mark = tuple(yes_or_no["body"]), True  # "skip full or not?"
     is_choice = len(lexemes) > 3 and lexemes[-2].has("OR") and lexemes[-1].word in _STATES and lexemes[-3].word in _STATES
     question = _verbless_question(source, lexemes, has_question_mark=has_question_mark or is_choice)
     if question is not None:

@@ -129,7 +129,7 @@ def close_up_step(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
         ),
         (
             r"(show|display|see|let_me_see|let_us_see|showing|watch|view) (me|us|SELF)? (?P<thing>_+?) (up|close|"
-            r"(LITTLE|LOT)? CLOSER|from_close|closer|close up|on|screen|in close|in more detail)*"
+            r"(LITTLE|LOT)? CLOSER|from_close|closer|close up|on|screen|in close|in more detail|better|properly|more clearly)*"
         ),
         r"(SHOW|FIND|show|let_me_see|let_us_see) (me|us)* where ((?P<thing>_+?) BE|BE (?P<thing>_+))",
         (
@@ -148,6 +148,7 @@ def close_up_step(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
         r"(CLOSER|tighter|in) (on|to) (?P<thing>_+)",
         r"(?P<thing>DET _+?) ((up|in) close|close up|CLOSER)",
         r"(ZOOM|ENLARGE|CARRY|TIGHTEN) (IN|CLOSER)* (GLUE|so_that|until|so|FILLER)* (?P<thing>(DET|it) _*?) (fills|takes up) _+",
+        r"(?P<thing>DET _*? FREE) (filling|(to)? fill) (DET|whole|entire)* (PICTURE|VIEWNOUN|frame|screen)",
         r"((TURN|SWING|CARRY) (LEFT|RIGHT|AROUND|CAMERA|it|FILLER)* to)? face (?P<thing>_+)",
         (
             r"(put|get|CARRY|have|keep|bring|TAKE|SHOW|AIM) (?P<thing>_+?) (in|into|to|at|on) (DET)? (centre|center|"

@@ -40,7 +40,7 @@ _LOOKING = r"(got|HAVEV|TELL|TELL-ING|COUNT|COUNT-ING|SHOW|TAKE|DESCRIBE|READ|SE
 
 
 _SEEING = (
-    r"(BE (there)? VISIBLE?|BE there|(can|do|did|could) SELF (ADVERB|FILLER)* (SEE|COUNT|READ|make out|get)|there BE|SELF "
+    r"(BE (there)? VISIBLE?|BE there|(can|do|did|could) SELF (ADVERB|FILLER)* (SEE|COUNT|READ|FIND|make out|get)|there BE|SELF "
     r"(can|could|do|have)? (SEE|have|got (up|out|over)?)|HAVEV SELF (got (up|out|over)?)?|do we have|"
     r"can be SEE-ED|can be seen|BE VISIBLE|"
     r"are we (SEE-ING|AIM-ING at)|you are SEE-ING|exist|VISIBLE|BE|in total|in all|(what|that)? SELF (can)? (SEE|FIND)|"
@@ -142,8 +142,12 @@ def _counted(
     if full_match("_+ in (AMOUNTISH|DET)* NUM (MINUTES|HOURS)", rest):
         return Unclear("I cannot wait. Shall I count them now?")  # "count the vans in ten minutes"
     rest = trimmed(rest, "FILLER", "COMMA", "ALSO")
+    if source.has_moved and (turned := full_match("(?P<thing>_+) (over)? (on|in) (this|that) (SIDE|direction)", rest)) is not None:
+        rest = turned["thing"]  # "turn around and count the tents on that side"
     while len(rest) > 1 and rest[-1].word in {"too", "as_well", "also", "total"}:
         rest = rest[:-1]
+    if (until_now := full_match("(?P<thing>_+) so far", rest)) is not None:
+        rest = until_now["thing"]  # "how many vans are there so far?"
     rest, inner = without_view(trimmed(without_sum(rest), "FILLER", "COMMA", "AMOUNTISH"))
     view = view or inner
     if full_match(

@@ -60,7 +60,7 @@ def _sweep(source: Source, lexemes: Sequence[Lexeme]) -> Step | tuple[Step, ...]
     scope = (
         r"(DET|FULL|WHOLETHING|VIEWNOUN|PRESETNOUN|area|site|AROUND|CAMERA|through|FILLER|over|of|whole|entire|"
         r"full|sweep|place|LIMIT|surroundings|look|and|have|DET|all|full_sweep|once|CARRY|TURN|in|AIM|complete|"
-        r"yard|room|field|LITTLE|horizon|HORIZON|NUM DEG|so_that|one)*"
+        r"yard|room|field|LITTLE|horizon|HORIZON|NUM DEG|so_that|one|SCAN|at)*"
     )
     if (
         full_match(

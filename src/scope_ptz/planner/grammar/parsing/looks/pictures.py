@@ -86,7 +86,7 @@ def _pictured(source: Source, rest: Sequence[Lexeme], times: int, words: Sequenc
     if not rest or rest[0].word in {"for", "as"} or match_start("of (this|these) FREE", rest):
         return Snap(times)
     if match := full_match(
-        r"(of|at|from|in|on) (?P<one>_+?) (and|AND) (another|one) (PICTURE)? (of|at|from|in|on) (?P<other>_+)", rest
+        r"(of|at|from|in|on) (?P<one>_+?) (and|AND) (ANOTHER|another|one) (PICTURE)? (of|at|from|in|on) (?P<other>_+)", rest
     ):
         refs = (place_of(source, match["one"]), place_of(source, match["other"]))
         return AtPlaces((refs[0], refs[1]), (Snap(times),)) if refs[0] and refs[1] else None
@@ -105,8 +105,9 @@ def _pictured(source: Source, rest: Sequence[Lexeme], times: int, words: Sequenc
 
 
 def _without_purpose(lexemes: Sequence[Lexeme]) -> tuple[Lexeme, ...]:
-    """Return the words after "a picture" without its purpose or recipient: "for the incident report"."""
+    """Return the words after "a picture" without its purpose, recipient or time: "for the report", "before we open"."""
     for i, x in enumerate(lexemes):
-        if i and x.word == "for":
+        is_time = match_start("BEFORE (we|SELF) (FREE|ADVERB) (FILLER)* \\Z", lexemes[i:]) is not None
+        if i and (x.word == "for" or is_time):
             return tuple(lexemes[:i])
     return tuple(lexemes)

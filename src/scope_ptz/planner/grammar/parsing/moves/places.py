@@ -31,6 +31,7 @@ _GO = (
 _TAIL = (
     r"(FILLER|on (DET)? (big|large|main)? (VIEWNOUN|screen)|on|screen|up|now|please|VIEWNOUN|"
     r"PRESETNOUN|again|first|next|instead|INSTEAD|AGAINWORD|SELF|"
+    r"BACK (up|on)|for a (AMOUNTISH|quick|couple of)* (SECONDS|MINUTES|moment|while|bit|LITTLE)|"
     r"FIRSTLY|VISIBLE|QUOTE|INTURN|over|COMMA (?=over)|CAMERA|ORDINAL|for|me|is|what|i|need|want|NOW)*"
 )
 _SUPERLATIVES = frozenset({"busiest", "quietest", "fullest", "emptiest", "most crowded", "least crowded", "calmest"})
@@ -42,8 +43,9 @@ _RETURNING = frozenset(
 )
 
 _STORED = (
-    "(FILLER)* ((LISTING|TELL)? (me|us)? (WHQ|DET|all|EVERY|HOWMANY)* PRESETNOUN (names)? (DOV|HAVEV|BE|MODAL|SELF|there|got|have|"
-    "hold|holds|know|keep|save|saved|store|stored|set|set_up|up|programmed|loaded|available|in|on|DET|CAMERA|FILLER|this|"
+    "(FILLER)* ((LISTING|TELL|READ)? (me|us|out)* (WHQ|DET|all|EVERY|HOWMANY)* PRESETNOUN (names)? "
+    "(DOV|HAVEV|BE|MODAL|SELF|there|got|have|"
+    "hold|holds|know|keep|been|so|far|save|saved|store|stored|set|set_up|up|programmed|loaded|available|in|on|DET|CAMERA|FILLER|this|"
     "thing|system|unit|memory|box|rig|device|right|now|here|at|the|moment|to|choose|from|pick|disposal|my|our|(this|"
     "(?!ANY)DET) FREE \\Z)*)"
 )

@@ -12,10 +12,11 @@ from scope_ptz.planner.grammar.parsing.moves.turn_words import ALLOWED_IN_TURNS,
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start, search
 
 AXIS_TARGET = (
-    r"(AND|COMMA|and)* (DET)? (?P<axis>PAN|TILT|ZOOM|PANNOUN|TILTNOUN|ZOOMNOUN) (to|of|at|on|is|EQUALS)? (?P<number>NUM) (DEG|X)?"
+    r"(AND|COMMA|and)* (DET|ABSOLUTE)* (?P<axis>PAN|TILT|ZOOM|PANNOUN|TILTNOUN|ZOOMNOUN) "
+    r"(to|of|at|on|is|EQUALS)? (?P<number>NUM) (DEG|X)?"
 )
 
-_ON_TARGET = r"(AND|COMMA|and)* (DET)? (PAN|TILT|PANNOUN|TILTNOUN) (on|to|at) NUM DEG?"
+_ON_TARGET = r"(AND|COMMA|and)* (DET|ABSOLUTE)* (PAN|TILT|PANNOUN|TILTNOUN) (on|to|at) NUM DEG?"
 
 _NO_COMPASS = Unclear(
     "I have no compass: I know directions only as left and right of where the camera points. Which way shall I turn?"
@@ -46,9 +47,7 @@ def special_turn(lexemes: Sequence[Lexeme]) -> Step | None:
     if match := full_match(rf"{glue} (?P<way>VERTICALUP|VERTICALDOWN) {glue}", lexemes):
         return Move((Turn("tilt", 1 if match["way"][0].has("VERTICALUP") else -1, Amount("limit")),))
     if (
-        match := full_match(
-            rf"(CARRY|AIM|SWITCH|FILLER|CAMERA|DET|GLUE)* (to|at) (ABSOLUTE)? (?P<targets>({AXIS_TARGET})+)", lexemes
-        )
+        match := full_match(rf"(CARRY|AIM|SWITCH|TURN|FILLER|CAMERA|DET|GLUE)* (to|at) (?P<targets>({AXIS_TARGET})+)", lexemes)
     ) or (any(x.has("EQUALS") for x in lexemes) and (match := full_match(rf"(?P<targets>({AXIS_TARGET})+)", lexemes))):
         return _targets(match["targets"])
     if match := full_match(rf"(FILLER)* (set|put) (CAMERA|DET CAMERA)? (?P<targets>({_ON_TARGET})+)", lexemes):

@@ -37,7 +37,7 @@ _STILL = re.compile(
     re.IGNORECASE,
 )
 _PREPOSITIONS_OF_PLACES = frozenset(
-    {"at", "in", "on", "inside", "of", "off", "into", "onto", "around", "round", "outside", "across"}
+    {"at", "in", "on", "inside", "of", "off", "into", "onto", "around", "round", "outside", "across", "down", "along", "over"}
 )
 _IS = "(BE|LOOKSLIKE|looks|seems|gets)"
 

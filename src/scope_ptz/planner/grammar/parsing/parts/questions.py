@@ -15,7 +15,7 @@ _LEAD = (
 _FORMS = (
     r"(in|at|on|from|to|of|by|with|for|under|behind)? (WHQ|what|which|who|where|how|HOWMANYMORE|HOWMANY)",
     r"have (SELF|they|any|the FREE+ (been|got|gone|left|arrived))",
-    r"do the (?!(rounds|round|usual|(other|same) thing|tour|lot|following|trick|thing|job|FULL|PRESET)) _ _ _*|"
+    r"do the (?!(rounds|round|usual|(other|same) (thing|one|ones|way)|tour|lot|following|trick|thing|job|FULL|PRESET)) _ _ _*|"
     r"do (SELF|these|those|all|any|PRON|SOMEONE|both|EVERY)",
     (
 r"(BE|does|did|has|had) (not)? (there|DET|PRON|SOMEONE|NOONE|FREE|SELF|PRESET|ANY|NUM|CAMERA|PICTURE|"

@@ -109,7 +109,7 @@ def split_trailing_place(source: Source, lexemes: Sequence[Lexeme]) -> tuple[tup
     for size in range(min(len(lexemes) - 1, 14), 1, -1):
         tail = lexemes[len(lexemes) - size :]
         before = lexemes[len(lexemes) - size - 1]
-        lead = full_match(r"(?P<prep>at|from|in|on|using|for|for each|between|across|to) (?P<place>_+)", tail)
+        lead = full_match(r"(?P<prep>at|from|in|on|using|for|for each|between|across|to|outside) (?P<place>_+)", tail)
         is_past_particle = (
             before.word in _PARTICLES and len(lexemes) > size + 1 and lexemes[len(lexemes) - size - 2].has("FREE", "HAVEV")
         )
@@ -132,6 +132,7 @@ def split_trailing_place(source: Source, lexemes: Sequence[Lexeme]) -> tuple[tup
             not places
             or preposition in {"at", "from", "in", "using", "across"}
             or any(x.has("PRESETNOUN") for x in lead["place"])
+            or (preposition == "outside" and search("HOWMANY", lexemes) is not None and not _any_names_a_thing(places))
             or (
                 preposition == "on"
                 and not source.has_moved

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from scope_ptz.english import is_plural
 from scope_ptz.english.grammar.parts_of_speech import parts_of_speech
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 from scope_ptz.planner.grammar.parsing.parts.clause import DIRECTIONS, VERBS
+from scope_ptz.planner.grammar.parsing.parts.patterns import match_start
 
 _MODIFIERS = frozenset({
     "tilt", "zoom", "pan", "degree", "film", "show", "record", "call", "help", "check", "centre", "center", "camera", "search",
@@ -32,6 +34,10 @@ _HEADS = frozenset({
     "switch", "switches",
 })  # fmt: skip
 """Command words, and words for the camera, that can end a compound noun."""
+
+_TOPIC = "_ (?P<nouns>_{1,2}) (PREP (DET)? (FREE|PRESET){1,3})? COMMA (BE|DOV|HAVEV) (they|PRON) _"
+_TOPIC_MODIFIERS = frozenset({"stop", "call", "check", "parking", "head", "tail", "end", "step"})
+"""Command words that can begin the plural thing of a question that follows it: "stop lights on the bridge, are they red?"."""
 
 _PLACES = frozenset({"pitch", "track", "swing", "stand", "roll"})
 """Command words that are places after a preposition and an article: "the sprinklers on the pitch"."""
@@ -66,6 +72,10 @@ _NO_MODIFIERS = frozenset({"other", "same", "own", "next", "last", "only", "whol
 def with_compound_nouns(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
     """Return the lexemes, in which command words that are part of a compound noun are nouns."""
     out = list(lexemes)
+    if (topic := match_start(_TOPIC, lexemes)) is not None and lexemes[0].word in _TOPIC_MODIFIERS:
+        nouns = topic["nouns"]
+        if all(x.has("FREE", "EXCEPT") for x in nouns) and _is_noun(nouns[-1]) and is_plural(nouns[-1].word):
+            out[: len(nouns) + 1] = [x.reworded(x.word, "FREE") for x in lexemes[: len(nouns) + 1]]
     for i, x in enumerate(lexemes):
         if x.has("FREE", "PRESET") or not i:
             continue

@@ -43,7 +43,7 @@ _WANTED_PICTURE = (
 """A request for a picture of something at a preset, followed by commands to go there and take it."""
 
 _FOLLOWED_AT_PLACE = (
-    "(FILLER|COMMA)* (KEEP|TRACK|TRACK-ING) ((?!COMMA|STOP|AND|THEN) _)+? (?P<place>(at|in) (DET)? PRESET PRESETNOUN?) (COMMA)? "
+    "(FILLER|COMMA)* (KEEP|TRACK|TRACK-ING) ((?!COMMA|STOP|AND|THEN) _)+? (?P<place>(at|in|on) (DET)? PRESET PRESETNOUN?) (COMMA)? "
     rf"(for|during|over) {SECONDS} FILLER* (?=COMMA|STOP|AND|THEN|\Z)"
 )
 """A thing to follow at a preset, then a duration: "follow the van at the gate for 20 seconds"."""
@@ -89,6 +89,8 @@ def _with_place_first(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
     if match is None:
         return lexemes
     place = match["place"]
+    if place[0].word == "on" and all("_" not in x.word for x in place if x.has("PRESET")):
+        return lexemes  # "the cyclist on the bridge" may be on a bridge in the current view
     kept = [x for x in lexemes if not any(x is y for y in place)]
     return [place[0].reworded("at", "PREP", "GLUE"), *place[1:], place[-1].reworded(",", "COMMA"), *kept]
 

@@ -159,6 +159,9 @@ def _with_preset(old: tuple[Lexeme, ...], new: Sequence[Lexeme]) -> tuple[Lexeme
         return tuple(new)  # the name of the first preset is misspelt or unknown
     if match is None or not places:
         return None
+    goes = any(x.has("SHOW", "SWITCH", "CARRY", "AIM") for x in new)
+    if goes and any(x.has("PICTURE", "SNAP", "COUNT", "HOWMANY", "TRACK") for x in old):
+        return None  # "a picture of the gate. Scratch that, show me the gate": the picture may not be wanted
     return (*old[: places[-1]], *match["preset"], *old[places[-1] + 1 :])
 
 

@@ -47,7 +47,11 @@ COUNTS = (
     ),
     (r"^((?:number of|how many)\b.*) in (picture|shot|frame)(?=\W*$)", r"\1 in the \2"),
     (r"^(.*\b(?:count|how many)\b.*)[,.;] i (?:just |only )?want(?:ed)? to know how many [\w ]+\W*$", r"\1"),
-    (r"\b(how m[ae]ny [\w ]+?) (?:have|has) (?:arrived|got in|turned up|come in|gathered|shown up)\b", r"\1 are there"),
+    (
+        r"\b(how m[ae]ny [\w ]+?) (?:have|has) (?:arrived|got in|turned up|come in|gathered|shown up)\b"
+        r"(?: so far| already| by now)?",
+        r"\1 are there",
+    ),
     (r"\b(how m[ae]ny [\w ]+?) are left\b", r"\1 are there"),
     (r"\b(count up) them (?=\w)", r"\1 the "),
     (r"^count they (?=\w+ \w+)", "count the "),
@@ -114,7 +118,7 @@ COUNTS = (
     (r"^full[- ]scene count: (?:the )?([\w ]+)", r"count the \1 in the whole scene"),
     (r", and, separately, (?=the )|\band, separately, (?=the )", " and "),
     (r"\bcount (the [\w ]+?) again(?=[.,;!?]|$| and\b)", r"count \1"),
-    (r"\b(how m[ae]ny [\w ]+?) are standing (?=at|in|on|by)", r"\1 are "),
+    (r"\b(how m[ae]ny [\w ]+?) are standing (?=at|in|on|by|outside)", r"\1 are "),
     (r"^head ?count[,:] (?:of )?(people\b[\w -]*|[\w ]+ in [\w -]+)\W*$", r"count the \1"),
     (r"\bhow many ([\w ]+?) you (?:are able to|can) see\b", r"how many \1 can you see"),
     (r"\bnumber fo\b", "number of"),

@@ -88,7 +88,10 @@ def with_places_named(text: str, presets: tuple[str, ...]) -> str:
         (
             rf"^(?:the )?([\w ]+?) (at|in|on) (?:the )?({names}), (\w+) or (\w+)\W*$",
             lambda match: (
-                match[0] if NO_TOPIC.search(match[1]) else f"is the {match[1]} at the {match[3]} {match[4]} or {match[5]}?"
+                match[0]
+                if NO_TOPIC.search(match[1])
+                else f"{'are' if is_plural(match[1].split(' ')[-1]) else 'is'} the {match[1]} at the {match[3]} "
+                f"{match[4]} or {match[5]}?"
             ),
         ),
         (
@@ -128,7 +131,7 @@ def with_places_named(text: str, presets: tuple[str, ...]) -> str:
             rf"^(\w+) count (at|in|on) (?=(?:the )?(?:{names})\b)",
             lambda match: f"count the {plural(match[1].lower())} {match[2]} ",
         ),
-        (rf"\b(how many [\w ]+?) outside (?=(?:the )?(?:{names})\W*$)", r"\1 are at "),
+        (rf"\b(how many (?:(?!(?:are|is) )[\w ])+?) outside (?=(?:the )?(?:{names})\W*$)", r"\1 are at "),
         (rf"^(?:the )?({names}), now\W*$", r"go to the \1"),
         (rf"\bgo 2 (?=(?:the )?(?:{names})\b)", "go to "),
         (rf"^({_COUNTS} [\w ]+?)[,:] (?:the )?({names})\W*$", r"\1 at the \2"),

@@ -142,7 +142,11 @@ WITHDRAWALS = (
         "",
     ),
     (r"[,;]? (?:and|but) (?:do not|don['’]?t) (?:follow|track) (?:anybody|anyone|anything)\W*$", ""),
-    (r",? but (?:do not|don['’]?t) move the camera while (?:doing|you do) (?:it|so|that)\W*$", " without moving the camera"),
+    (
+        r"[,.;]? (?:but |and )?(?:please )?(?:do not|don['’]?t) move the camera while (?:doing|you do) "
+        r"(?:it|so|that)(?=\W*$|[,.;])",
+        " without moving the camera",
+    ),
 )
 """Patterns with the words that replace them."""
 
@@ -171,9 +175,8 @@ _LEFT_OUT = re.compile(
     rf"(?P<said>.+?)(?:[,.;]+| -+| –) *(?:(?:well|please|correction|scratch that|actual+y|no|nah|naw|nope|wait|sorry"
     rf"|oh|hang on|on second "
     rf"thoughts?)[,: ]+)*{_LEAVE_OUT} (?:the |that )?"
-    rf"(?P<what>pan|tilt|zoom|count|follow|track|home|going home|{_PICTURE})(?:ning|ting|ing)?(?:,? (?:just|only) (?:"
-    rf"(?:do )?the \w+"
-    rf"|go there|go home|do that|count|look))?\W*",
+    rf"(?P<what>pan|tilt|zoom|count|follow|track|home|going home|{_PICTURE})(?:ning|ting|ing)?(?:,? (?:just|only) "
+    rf"(?P<only>(?:do )?the \w+|go there|go home|do that|count|look))?\W*",
     re.IGNORECASE,
 )
 
@@ -189,4 +192,7 @@ def without_part_left_out(text: str) -> str:
     kept = [(link, part) for link, part in parts if not pattern.match(part.strip())]
     if not kept or len(kept) != len(parts) - 1:
         return text
+    only = re.sub(r"^(?:do )?the |^(?:go there|do that)$", "", (match["only"] or "").lower())
+    if not any(only in part.lower() for _, part in kept):
+        return text  # "pan left 20 and tilt up 10, no, forget the tilt, just go home": what remains is unclear
     return kept[0][1] + "".join(link + part for link, part in kept[1:])

@@ -99,8 +99,8 @@ class _Splitter(ClauseBoundaryDetector):
         if (
             self.words
             and lexeme.has("COMMA", "AND")
-            and search("(to|at) (PAN|TILT|PANNOUN|TILTNOUN) NUM DEG? \\Z", self.words)
-            and match_start("(PAN|TILT|ZOOM|TILTNOUN) NUM", self.lexemes[i + 1 :])
+            and search("(to|at) (DET|ABSOLUTE)* (PAN|TILT|PANNOUN|TILTNOUN) (of|at)? NUM DEG? \\Z", self.words)
+            and match_start("(DET|ABSOLUTE)* (PAN|TILT|ZOOM|TILTNOUN|PANNOUN) (of|at)? NUM", self.lexemes[i + 1 :])
         ):
             return i + 1  # "point at pan 30, tilt -10"
         if (

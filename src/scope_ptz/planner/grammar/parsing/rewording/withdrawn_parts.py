@@ -1,0 +1,141 @@
+"""Leave out the part of an instruction that is taken back: "pan left 20 and tilt up 10. Actually, leave the tilt alone".
+
+The words that take a part back name it again: its action ("the tilt", "the picture"), its preset, its thing, or its verb ("no,
+don't follow him"). If they fit exactly one part, that part is left out. If they fit several, or if it is unclear what remains
+of the others, the user is asked.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from scope_ptz.planner.grammar.lexing.lexer import Lexeme, lexemes_of
+from scope_ptz.planner.grammar.parsing.parts.clause import MARKERS
+from scope_ptz.planner.grammar.parsing.parts.patterns import Match, match_start, search
+from scope_ptz.planner.grammar.parsing.rewording.repairs import Repaired, without_text
+
+_ENDS = "COMMA|STOP|DASH|COLON|QUESTION"
+_SEPARATORS = ("COMMA", "STOP", "DASH", "COLON", "AND", "THEN", "BUT")
+_SIGNAL = (
+    "no|nah|nope|wait|sorry|actually|hang_on|hold_on|hang on|hold on|(scratch|scrap|strike) that|on (second|ORDINAL) "
+    "(thought|thoughts)|changed my mind"
+)
+_PAUSES = "((?!actually|sorry|wait) FILLER|COMMA|DASH|STOP|BUT|SELF)*"
+_ALONE = "alone|as it is|as_it_is|as is|where it is|the way it is|be"
+_ACTS = "PAN|TILT|ZOOM|PANNOUN|TILTNOUN|ZOOMNOUN|PICTURE|COUNT|COUNT-ING|TRACK-ING|PAN-ING|TILT-ING|ZOOM-ING"
+_OBJECT = f"(DET|about|with|PRON)* (?P<object>((?!{_ENDS}|AND|THEN|BUT|NUM|LEFT|RIGHT|UP|DOWN|IN) _){{1,4}})"
+_FORMS = (
+    rf"(LEAVE|keep) DET* (?P<object>{_ACTS}) (?P<alone>({_ALONE}))",
+    rf"(?P<firm>(forget|omit|skip|cancel|scrap|drop|scratch|ignore|disregard|never mind|LEAVE OUT)) {_OBJECT}",
+    rf"LEAVE {_OBJECT}",
+    rf"(do|DOV) not (bother)? (?P<verb>TRACK|ZOOM|COUNT|SNAP|PAN|TILT|TAKE|READ|FIND|TRACK-ING|ZOOM-ING|COUNT-ING|PAN-ING|TILT-ING)"
+    rf" (in|IN|on)* (PRON|it|him|them|{_OBJECT})?",
+)
+_SIGNALS = f"(?P<signal>({_SIGNAL}) (({_SIGNAL})|{_PAUSES.rstrip('*')})*)"
+_TAKING_BACK = tuple(
+    rf"(?P<pause>({_ENDS})) {_PAUSES} {_SIGNALS}? (please)? {form} (please|FILLER)* (?=({_ENDS}|AND)|\Z)" for form in _FORMS
+)
+_TURNS = {"PAN": ("PAN", "LEFT", "RIGHT"), "TILT": ("TILT", "UP", "DOWN")}
+_KINDS = ("PAN", "TILT", "ZOOM", "COUNT", "TRACK", "READ", "FIND", "PICTURE")
+_PICTURES = ("PICTURE", "SNAP")
+
+
+@dataclass(frozen=True, slots=True)
+class _Part:
+    """A part of an instruction between two separators, with its position among the lexemes."""
+
+    first: int
+    last: int
+    lexemes: tuple[Lexeme, ...]
+
+
+def without_withdrawn_parts(said: Repaired) -> tuple[Repaired, Sequence[Lexeme]]:
+    """Return an instruction without the part that is taken back, and the words that take back an unclear part (often none)."""
+    for i in range(1, len(said.lexemes)):
+        match = next((found for form in _TAKING_BACK if (found := match_start(form, said.lexemes[i:]))), None)
+        if match is None or not (match.has("signal") or match.has("firm") or match.has("alone")):
+            continue
+        before, after = said.lexemes[:i], said.lexemes[i + match.size :]
+        fitting = [part for part in _parts(before) if _fits(match, part)]
+        if not fitting:
+            continue
+        kept = _without(before, fitting[0], is_act=_kind(match) != "") if len(fitting) == 1 else None
+        is_only = match_start(f"({_ENDS}|FILLER)* (just|only)", after) is not None
+        is_said_later = match.has("signal") or match.has("firm")
+        if kept is None or not is_said_later or (kept and is_only) or (not kept and not after) or search("|".join(MARKERS), before):
+            return said, said.lexemes[i + 1 : i + match.size]
+        return without_text(said, _joined(kept, after)), ()
+    return said, ()
+
+
+def takes_back_unclearly(text: str, presets: tuple[str, ...]) -> bool:
+    """Return whether a text takes something back without making clear what remains, so that none of it may be left unread."""
+    lexemes = tuple(lexemes_of(text, presets))
+    return bool(without_withdrawn_parts(Repaired(lexemes, text))[1])
+
+
+def _parts(lexemes: Sequence[Lexeme]) -> list[_Part]:
+    """Return the parts of an instruction."""
+    parts: list[_Part] = []
+    first = 0
+    for i in range(len(lexemes) + 1):
+        if i == len(lexemes) or lexemes[i].has(*_SEPARATORS):
+            if i > first:
+                parts.append(_Part(first, i, tuple(lexemes[first:i])))
+            first = i + 1
+    return parts
+
+
+def _kind(match: Match) -> str:
+    """Return the class of the action that is taken back, such as "TILT"; empty for a preset or a thing."""
+    named = match["verb"] if match.has("verb") else match["object"]
+    if match.has("verb") and named[0].has("TAKE", "SNAP", "SNAP-ING"):
+        return "PICTURE"
+    nouns = {"PAN": "PANNOUN", "TILT": "TILTNOUN", "ZOOM": "ZOOMNOUN"}
+    return next((kind for kind in _KINDS for x in named[:1] if x.has(kind, f"{kind}-ING", nouns.get(kind, kind))), "")
+
+
+def _fits(match: Match, part: _Part) -> bool:
+    """Return whether words that take something back name a part."""
+    kind, named = _kind(match), match["object"] if match.has("object") else ()
+    content = [x for x in named if x.has("FREE", "PRESET") and not x.has("FILLER")]
+    if kind:
+        is_same = any(x.has(*_PICTURES) if kind == "PICTURE" else x.has(kind) for x in part.lexemes)
+        ways = _TURNS.get(kind, ())
+        is_turn = any(x.has(*ways) for x in part.lexemes) and not any(x.has("ZOOM", "PRESET") for x in part.lexemes)
+        if not (is_same or is_turn):
+            return False
+        is_pronoun = any(x.has("PRON") for x in part.lexemes)
+        return not (match.has("verb") and content) or is_pronoun or _names(content, part)
+    return bool(content) and len(content) == len(named) and _names(content, part)
+
+
+def _names(content: Sequence[Lexeme], part: _Part) -> bool:
+    """Return whether a part has all the given words or presets."""
+    return all(any(x.word == y.word and x.preset == y.preset for y in part.lexemes) for x in content)
+
+
+def _without(lexemes: tuple[Lexeme, ...], part: _Part, *, is_act: bool) -> tuple[Lexeme, ...] | None:
+    """Return lexemes without a part; None if it is unclear what remains: "zoom in on the van and read it; forget the van"."""
+    later = [other for other in _parts(lexemes) if other.first > part.last]
+    if is_act and any(x.has(*_PICTURES) for x in part.lexemes) and any(x.has("PRESET") for x in part.lexemes):
+        return None  # "a picture of the gate": going there may still be wanted
+    if any(search("PRON|there|EVERY|EACHTIME", other.lexemes) for other in later):
+        return None
+    if not is_act and not all(search("PRESET", other.lexemes) and len(other.lexemes) <= 3 for other in later):
+        return None
+    start = part.first
+    while start and lexemes[start - 1].has(*_SEPARATORS):
+        start -= 1
+    end = part.last
+    while not start and end < len(lexemes) and lexemes[end].has(*_SEPARATORS):
+        end += 1
+    return (*lexemes[:start], *lexemes[end:])
+
+
+def _joined(kept: tuple[Lexeme, ...], after: tuple[Lexeme, ...]) -> tuple[Lexeme, ...]:
+    """Return what remains, followed by what comes after the words that took a part back."""
+    if match := match_start(f"({_ENDS})* (?=AND|THEN)" if kept else f"({_ENDS}|AND|BUT|THEN|just|only)*", after):
+        after = after[match.size :]
+    return (*kept, *after)
