@@ -118,7 +118,7 @@ def _read_without_remarks(
     """
     whole, presets = written_out(said), preset_names or ()
     if takes_back_unclearly(whole, presets):
-        return None
+        return whole_text
     for shorter in shorter_versions(whole, presets):
         if (understanding := _read(shorter, preset_names, conversation)).steps:
             return understanding

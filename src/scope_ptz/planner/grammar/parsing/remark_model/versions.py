@@ -12,6 +12,7 @@ from scope_ptz.planner.grammar.parsing.remark_model.model import remark_model
 from scope_ptz.planner.grammar.parsing.remark_model.segments import Segment, segments_of
 from scope_ptz.planner.grammar.parsing.rewording.remark_forms import SUBJECT
 from scope_ptz.planner.grammar.parsing.rewording.shorter_versions import UNFINISHED, is_amount, opens_request, refers_back
+from scope_ptz.planner.grammar.parsing.rewording.surrounding_remarks import AT_AN_END, WITHDRAWAL
 
 _MAX_CHARS = 500  # longer texts are not shortened: each version is parsed again
 _MAX_SEGMENTS = 12
@@ -29,9 +30,15 @@ _NEGATED_STATEMENT = re.compile(
 _EVENT = re.compile(r"^(?:before|after) (?:i|we|he|she|they|it|the|my|our|someone|\w+ \w+s)\b", re.IGNORECASE)
 """The beginning of a clause about a time: "before the boss comes"."""
 
+_TAKING_BACK = re.compile(
+    rf"{AT_AN_END}|\b(?:{WITHDRAWAL}|jokes?|called (?:it|that|this) off|(?:never|not) to|(?:it|that|this) (?:should|must|ought|has to|needs)|nobody (?:wants|needs)"
+    r"|(?:is|are|was)(?:n['’]t| not) (?:needed|necessary))\b",
+    re.IGNORECASE,
+)
+"""Words with which a statement may take something back, or ask for something else: "it should be lower", "that was a joke"."""
+
 _BINDING = re.compile(
-    r"^(?:left|right|up|down|in|out)\b"
-    r"|\b(?:don['’]?t|do not|not|no|never|nor|without|instead|unless|if|when(?! you (?:get|have|can))|until|till|otherwise|else"
+    r"\b(?:don['’]?t|do not|not|no|never|nor|without|instead|unless|if|when(?! you (?:get|have|can))|until|till|otherwise|else"
     r"|whichever|either|only|except|rather|wait|actually|cancel|forget|ignore|scratch|stop|mind|mean|first|then|next|before|after"
     r"|than|same|both|each|every|again|whole|entire|full|everywhere|anywhere|(?:last|that|this|other) one|lot|bit|touch|twice"
     r"|zoom|pan|tilt)\b",
@@ -65,6 +72,8 @@ def _is_binding(text: str, presets: tuple[str, ...]) -> bool:
     """Return whether a segment begins with a command, or may restrict, forbid, repeat or take back something."""
     first = next((lexeme for lexeme in lexemes_of(text, presets) if not lexeme.has("FILLER", "AND", "BUT")), None)
     if first is not None and first.has(*VERBS, "TELL", "HOWMANY"):
+        return True
+    if _TAKING_BACK.search(text) is not None:
         return True
     if (negated := _NEGATED_STATEMENT.match(text)) is not None:
         text = text[negated.end() :]

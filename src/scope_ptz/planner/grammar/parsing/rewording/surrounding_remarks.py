@@ -39,7 +39,7 @@ _DIRECTION = (
     r"(?:to the|on the|pan|turn|go|look|bit|touch|said|the) (?:left|right)|(?:left|right) (?:by|a bit|\d|side|one|hand)"
     r"|(?:go|look|further|bit|touch|said) (?:up|down|in|out)"
 )
-_AT_AN_END = r"^(?:left(?! (?:it|them|him|her)\b)|right|up|down|in|out)\b|(?<!me )(?<!it )(?<!us )(?<!is )\b(?:left|right|up|down)$"
+AT_AN_END = r"^(?:left(?! (?:it|them|him|her)\b)|right|up|down|in|out)\b|(?<!me )(?<!it )(?<!us )(?<!is )\b(?:left|right|up|down)$"
 _RESTRICTION = (
     r"ones|(?:that|this|which|red|other|next|last|big|small|the) one|especially|particularly|except|apart from|both"
     r"|every|each|instead"
@@ -53,13 +53,13 @@ _REQUEST = (
     r"(?<!wonder )if|unless|until"
     r"|(?:know|tell|check|find out|ask) (?:how|what|whether|which|where|who|if|when)"
 )
-_WITHDRAWAL = (
+WITHDRAWAL = (
     r"wrong|mistake|error|thoughts|against|hold on|cancel\w*|forget|scratch|scrap|never mind|nvm|kidding|joking"
     r"|changed|decided|limits?"
     r"|forbidden|allowed|banned|private|secret|called off|don't|do not|didn't want|already"
 )
 _ASKED = re.compile(
-    rf"{_AT_AN_END}|^(?:it|that|this)\b.*\d|\b(?:{_COMMAND}|{_DIRECTION}|{_RESTRICTION}|{_REQUEST}|{_WITHDRAWAL})\b", re.IGNORECASE
+    rf"{AT_AN_END}|^(?:it|that|this)\b.*\d|\b(?:{_COMMAND}|{_DIRECTION}|{_RESTRICTION}|{_REQUEST}|{WITHDRAWAL})\b", re.IGNORECASE
 )
 """Words with which a statement may ask for something, restrict what was asked, or take it back."""
 
@@ -136,7 +136,7 @@ _PAST_NEWS = re.compile(
     r"(?:anyway,? |so )?(?P<rest>(?:count|pan|tilt|zoom|take|go to|how many|is|are|any)\b.+)",
     re.IGNORECASE,
 )
-_LIMITING = re.compile(rf"\b(?:{_RESTRICTION}|{_REQUEST}|{_WITHDRAWAL})\b", re.IGNORECASE)
+_LIMITING = re.compile(rf"\b(?:{_RESTRICTION}|{_REQUEST}|{WITHDRAWAL})\b", re.IGNORECASE)
 _NEWS_BEFORE_QUESTION = re.compile(
     r"(?P<news>[^?]+?)(?:, so|[.;,]) (?P<rest>(?:how many|is|are|what|which|has|have|any|could you tell me) [^.;]+\?*)",
     re.IGNORECASE,
