@@ -188,3 +188,87 @@ def test_a_comparison_without_counts_is_asked_about() -> None:
 )
 def test_things_that_cannot_be_made_out_are_not_absent(instruction: str, looks: tuple[Any, ...], reply: str) -> None:
     assert last_calls(instruction, looks=looks)[1].startswith(reply)
+
+
+@pytest.mark.parametrize("question", ["which one has the most?", "which preset has the most people?"])
+@pytest.mark.parametrize(
+    ("found", "reply"),
+    [
+        (((4, False), (6, False)), "As far as I could see, preset highway had more people, with at least 6."),
+        ((2, 5), "Preset highway had more people, with 5."),
+        ((5, 5), "It is a tie between gate and highway, with 5 each."),
+    ],
+)
+def test_presets_are_compared_by_the_counts_of_the_tour(question: str, found: tuple[Any, ...], reply: str) -> None:
+    calls, said = last_calls("at each preset, count the people", question, looks=found)
+    assert not calls
+    assert said == reply
+
+
+@pytest.mark.parametrize("instruction", ["go to it", "go to that one", "show me that one", "take me to the busier one"])
+def test_the_preset_that_has_the_most_is_gone_to(instruction: str) -> None:
+    tour = "at each preset, count the people"
+    calls, _ = last_calls(tour, "which one has the most?", instruction, looks=((7, False), (3, False)))
+    assert calls == [("go_to_preset", {"name": "gate"})]
+
+
+def test_the_quieter_of_two_presets_needs_no_comparison_before() -> None:
+    calls, _ = last_calls("at each preset, count the people", "go to the quieter one", looks=(7, 3))
+    assert calls == [("go_to_preset", {"name": "highway"})]
+
+
+@pytest.mark.parametrize("instruction", ["go to it", "take me to the busier one"])
+def test_no_preset_is_gone_to_if_none_was_compared(instruction: str) -> None:
+    calls, reply = last_calls("is there a bus?", instruction, looks=(YES,))
+    assert not calls
+    assert reply.endswith(("?", "."))
+
+
+@pytest.mark.parametrize(
+    ("before", "asked", "expected"),
+    [
+        ("how many people are on the left?", "what about the right?", ("count_objects", "people on the right")),
+        ("what can you see?", "what about the left?", ("query_answer", "what can you see on the left?")),
+        ("describe the scene", "how about the middle?", ("query_answer", "what can you see in the middle?")),
+    ],
+)
+def test_a_side_of_the_picture_is_asked_about(before: str, asked: str, expected: tuple[str, str]) -> None:
+    calls, _ = last_calls(before, asked, looks=(3,) if before.startswith("how") else (YES,))
+    assert [(name, arguments.get("question", arguments.get("description"))) for name, arguments in calls] == [expected]
+
+
+@pytest.mark.parametrize("before", [(), ("pan left",)])
+def test_a_side_of_the_picture_moves_nothing(before: tuple[str, ...]) -> None:
+    calls, reply = last_calls(*before, "what about the right?")
+    assert not calls
+    assert reply.endswith("?")
+
+
+@pytest.mark.parametrize(
+    ("earlier", "looks"),
+    [
+        (("zoom in on the bus",), (True, 2)),
+        (("how much is the soup?", "go to the gate"), (YES, 2)),
+        (("read the sign", "pan left 20"), (YES, 2)),
+    ],
+)
+def test_other_things_are_counted_if_nothing_else_was_asked(earlier: tuple[str, ...], looks: tuple[Any, ...]) -> None:
+    calls, _ = last_calls(*earlier, "what about the cars?", looks=looks)
+    assert calls == [("count_objects", {"description": "cars", "view": "current"})]
+
+
+@pytest.mark.parametrize(
+    ("earlier", "question"),
+    [
+        (("how many people have umbrellas?", "is there a dog?"), "where is the dog?"),
+        (("how many taxis are there?", "is there a bus?"), "where is the bus?"),
+    ],
+)
+def test_where_is_about_the_thing_asked_about_last(earlier: tuple[str, ...], question: str) -> None:
+    calls, _ = last_calls(*earlier, "where?", looks=(3, YES))
+    assert calls == [("query_answer", {"question": question, "view": "current"})]
+
+
+def test_the_nearest_one_is_one_of_all_if_none_was_found() -> None:
+    calls, _ = last_calls("how many taxis are there?", "and the white ones?", "which one is the nearest?", looks=(3, 0, YES))
+    assert calls == [("query_answer", {"question": "which taxi is the nearest?", "view": "current"})]

@@ -11,6 +11,7 @@ from scope_ptz.english import singular
 from scope_ptz.english.grammar.questions import question_tree as tree
 from scope_ptz.english.grammar.questions.question_parser import parse_description, parse_question
 from scope_ptz.english.grammar.questions.recognition import is_description
+from scope_ptz.planner.grammar.binding.narrowing import is_worn
 from scope_ptz.planner.grammar.binding.noun_heads import names_several, without_predicate
 
 _MAX_WORDS = 16  # longer questions are not searched, because the search takes quadratic time
@@ -166,8 +167,10 @@ def _asked(text: str, asked: tree.Question | None, start: int, end: int) -> Aske
     description = _LEFT.sub("", noun_phrase) if isinstance(asked, tree.Where) else noun_phrase
     if isinstance(asked, tree.YesNo):
         with_rest = without_predicate(text[start:])
-        is_marked = text[end:].startswith(" with ") and len(with_rest) < len(text) - start  # "is the man with an umbrella walking?"
+        is_marked = (text[end:].startswith(" with ") or is_worn(with_rest)) and len(with_rest) < len(text) - start  # "is the man with an umbrella walking?"
         marked = with_rest if is_marked else _with_first_test(text[start:], asked.tests)
+        if isinstance(asked.tests[-1:][0] if asked.tests else None, tree.Has) and (worn := _before_verb(text[start:])) and is_worn(worn):
+            marked = worn  # "does the man in the red jacket have a helmet?"
         description = marked or without_predicate(noun_phrase)
         if not description:
             return None
@@ -179,6 +182,12 @@ def _asked(text: str, asked: tree.Question | None, start: int, end: int) -> Aske
     if (owner := _OWNER.match(description)) is not None:
         return AskedThing(owner[1], start, end - len(description) + len(owner[1]))  # "what colour is the worker's helmet?"
     return AskedThing(_ANYONE.sub("person", description), start, end)
+
+
+def _before_verb(text: str) -> str:
+    """Return the words before the verb of having: "man in the red jacket" of "man in the red jacket have a helmet"; else nothing."""
+    before, verb, _ = text.partition(" have ")
+    return before if verb else ""
 
 
 def _with_first_test(text: str, tests: Sequence[tree.Test]) -> str:

@@ -7,6 +7,8 @@ from abc import abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+from scope_ptz.english.grammar.questions import question_tree as tree
+from scope_ptz.english.grammar.questions.question_parser import parse_question
 from scope_ptz.planner.grammar import instruction_tree as ast
 from scope_ptz.planner.grammar.binding.asked_things import with_other_thing
 from scope_ptz.planner.grammar.binding.focus import PLURAL, foci_of, latest_counts, like_to_know, which_one
@@ -16,7 +18,7 @@ from scope_ptz.planner.grammar.binding.narrowing import is_region, narrowed, wit
 from scope_ptz.planner.grammar.binding.noun_heads import has_one, head_noun, is_same_kind, names_person, names_several
 from scope_ptz.planner.grammar.binding.pairs import members_of
 from scope_ptz.planner.grammar.binding.pending_questions import pending_step, with_thing
-from scope_ptz.planner.grammar.binding.preset_matching import match_preset
+from scope_ptz.planner.grammar.binding.preset_matching import match_exactly
 from scope_ptz.planner.grammar.execution.answer_sentences import noun
 
 _ONE = re.compile(r"\bone\b", re.IGNORECASE)
@@ -64,9 +66,14 @@ class FollowUpSteps(Names):
         return [ast.WiderView()]
 
     def _whatabout(self, step: ast.WhatAbout) -> Sequence[ast.Step]:
-        if step.thing.text and self.presets and (name := match_preset(step.thing.text, self.presets)):
+        if step.thing.text and self.presets and (name := match_exactly(step.thing.text, self.presets)):
             return [ast.GoToPreset(ast.PresetRef(name, explicit=True)), *self._last_question()]
         pending, topic = pending_step(self.conversation, self.presets or ()), self.topic
+        if step.thing.predicate and is_region(step.thing.predicate) and not pending:
+            if not self.foci and not self._last_question():
+                raise UnresolvedError("What would you like to know about that part of the picture?")
+            if self._asked_what_is_seen():
+                return [ast.Ask(f"what can you see {step.thing.predicate}?", "current")]
         if self.foci and self._is_region_without_noun(step.thing):
             step = ast.WhatAbout(ast.Thing(predicate=step.thing.text))
         if step.thing.predicate and (counted := self._count_before_moves(step.thing.predicate)):
@@ -86,7 +93,29 @@ class FollowUpSteps(Names):
             raise UnresolvedError(like_to_know(thing.text))  # a count says nothing about one thing
         if step.thing.pronoun == "both" and self.foci and self.foci[-1].look in {"count_objects", "query_answer"}:
             raise UnresolvedError(f"What shall I do with the {thing.text}?")
+        if self._says_nothing_about(described, thing):
+            return self._count(ast.Count((thing,)))
         return [*widening, self._last_look_at(thing, topic)]
+
+    def _says_nothing_about(self, named: ast.Thing, thing: ast.Thing) -> bool:
+        """Return whether the last look does not say what to do with a thing that is named by its own noun, so that it is counted.
+
+        That is so for several things after a close-up of one, and after a move for things of another kind: "what about the cars?"
+        does not ask for their price because that of the soup was asked for elsewhere.
+        """
+        last = self.foci[-1] if self.foci else None
+        if last is None or not named.text or has_one(named.text) or is_other(named.text) or is_same_kind(thing.text, last.description):
+            return False
+        if last.look in {"zoom_to_object", "track_object"}:
+            return names_several(thing.text)
+        has_moved = bool(self.conversation) and not foci_of(self.conversation[-1:])
+        return has_moved and last.look == "query_answer" and not isinstance(parse_question(last.question), tree.Exists)
+
+    def _asked_what_is_seen(self) -> bool:
+        """Return whether the last look of the conversation was the question what there is to see, which names no thing."""
+        last = self._last_question()[:1]
+        asked = parse_question(last[0].question) if last and isinstance(last[0], ast.Ask) else None
+        return isinstance(asked, tree.Describe) and asked.what is None and not any(isinstance(t, tree.Relation) for t in asked.tests)
 
     def _counted_together(self) -> tuple[str, ...]:
         """Return the things of several kinds that the last turn counted: cars and vans; nothing if it did anything else."""
