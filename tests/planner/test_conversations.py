@@ -272,3 +272,75 @@ def test_where_is_about_the_thing_asked_about_last(earlier: tuple[str, ...], que
 def test_the_nearest_one_is_one_of_all_if_none_was_found() -> None:
     calls, _ = last_calls("how many taxis are there?", "and the white ones?", "which one is the nearest?", looks=(3, 0, YES))
     assert calls == [("query_answer", {"question": "which taxi is the nearest?", "view": "current"})]
+
+
+@pytest.mark.parametrize("asked", ["read the number plate", "what about the number plate?"])
+@pytest.mark.parametrize(
+    ("before", "vehicle"),
+    [
+        ("zoom in on the blue van", "blue van"),
+        ("zoom in on the farthest car", "car in the middle"),  # in the close-up, another car may be the farthest
+    ],
+)
+def test_the_number_plate_is_that_of_the_vehicle_looked_at(before: str, vehicle: str, asked: str) -> None:
+    calls, _ = last_calls(before, asked, looks=(True, YES))
+    assert calls == [("query_answer", {"question": f"What does the number plate of the {vehicle} say?", "view": "current"})]
+
+
+def test_the_number_plate_of_several_vehicles_is_not_that_of_one() -> None:
+    calls, _ = last_calls("how many cars are there?", "read the number plate", looks=(3, YES))
+    assert calls == [("query_answer", {"question": "What does the number plate say?", "view": "current"})]
+
+
+def test_its_part_is_the_part_spoken_of() -> None:
+    calls, _ = last_calls("zoom in on the van", "read the number plate", "what is its number plate?", looks=(True, YES, YES))
+    assert calls[0][1]["question"] == "what is the number plate of the van?"
+
+
+@pytest.mark.parametrize(
+    ("before", "asked", "question"),
+    [
+        ("what is behind the forklift?", "and in front of it?", "what is in front of the forklift?"),
+        ("is the red car the nearest?", "and the farthest?", "is the red car the farthest?"),
+        ("which dock doors are open?", "are any of them closed?", "are any of the dock doors closed?"),
+    ],
+)
+def test_the_same_is_asked_in_another_respect(before: str, asked: str, question: str) -> None:
+    calls, _ = last_calls(before, asked, looks=(YES, YES))
+    assert calls == [("query_answer", {"question": question, "view": "current"})]
+
+
+@pytest.mark.parametrize("asked", ["zoom in on both", "look at both"])
+def test_both_are_the_two_things_zoomed_in_on(asked: str) -> None:
+    calls, _ = last_calls("zoom in on the crane", "zoom in on the bus", asked, looks=(True,))
+    assert [arguments.get("description") for name, arguments in calls if name == "zoom_to_object"] == ["crane", "bus"]
+
+
+def test_both_after_a_single_thing_is_asked_about() -> None:
+    calls, reply = last_calls("zoom in on the bus", "zoom in on both", looks=(True,))
+    assert not calls
+    assert reply == "Which two things do you mean? Please name them."
+
+
+def test_both_sides_are_added() -> None:
+    sides = ("how many people are on the left?", "and on the right?")
+    _, reply = last_calls(*sides, "and both together?", looks=(2, 3, 2, 3))
+    assert "5 altogether" in reply
+
+
+def test_another_thing_is_followed_for_as_long_from_where_the_camera_is() -> None:
+    earlier = "follow the man with the clipboard for 5 seconds"
+    calls, _ = last_calls(earlier, "now the one with the wheelbarrow")
+    assert calls == [("track_object", {"description": "man with the wheelbarrow", "duration_s": 5})]
+
+
+def test_one_of_two_colours_is_of_the_kind_asked_about() -> None:
+    calls, _ = last_calls("is there a red car or a blue one?", "zoom in on the blue one", looks=(YES, True))
+    assert calls[-1] == ("zoom_to_object", {"description": "blue car"})
+
+
+def test_the_other_one_of_many_is_asked_about() -> None:
+    earlier = ("zoom in on the bus", "zoom out", "how many people are there?", "zoom in on the nearest one")
+    calls, reply = last_calls(*earlier, "and the other one?", looks=(True, 5, True))
+    assert not calls
+    assert reply.startswith("Which other person do you mean?")

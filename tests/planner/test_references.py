@@ -78,6 +78,7 @@ def test_a_question_is_about_a_thing(question: str, description: str | None) -> 
     [
         ("what colour is the car?", "green lorry", "what colour is the green lorry?"),
         ("how much is the lettuce?", "apples", "how much are the apples?"),
+        ("is there a dog?", "dog on the right", "is there a dog on the right?"),
         ("what does the middle sign say?", "left sign", "what does the left sign say?"),
     ],
 )
@@ -241,7 +242,7 @@ def test_a_command_is_followed_up(before: str, follow_up: str, expected: tuple[s
 def test_another_one_is_asked_about() -> None:
     assert last_turn("how many signs are there?", "zoom in on one of them", count=3)[0] == [(ZOOM, "sign")]
     assert last_turn("zoom in on the red sign", "and the other one") == (
-        [], "Which other sign do you mean? Please describe it.",
+        [], "Which other sign do you mean? For example, the left one, the right one or the nearest one.",
     )  # fmt: skip
 
 
@@ -310,7 +311,10 @@ def test_the_other_thing_is_zoomed_in_on(instructions: tuple[str, ...], expected
 @pytest.mark.parametrize(
     ("instructions", "question"),
     [
-        (("zoom in on the dog", "no, the other dog"), "Which other dog do you mean? Please describe it."),
+        (
+            ("zoom in on the dog", "no, the other dog"),
+            "Which other dog do you mean? For example, the left one, the right one or the nearest one.",
+        ),
         (("zoom in on the dog", "and the others?"), "Which other dogs do you mean? Please describe them."),
         (("zoom in on the stall", "and the one next to it?"), "Which other stall do you mean? Please describe it."),
         (("how many dogs are there?", "zoom in on both"), "Which of the 3 dogs do you mean?"),

@@ -106,10 +106,7 @@ def earlier_winners(conversation: Sequence[PastTurn], presets: tuple[str, ...]) 
         compared = next((found for step in reversed(steps or ()) if (found := _comparison_of(step)) is not None), None)
         if compared is not None and not compared.any_of:
             counts = counts_at_presets(conversation[: index + 1])
-            if index > last:
-                counts = counts_of_tour(counts)
-            else:
-                counts = [count for count in counts if count.turn == index]
+            counts = counts_of_tour(counts) if index > last else [count for count in counts if count.turn == index]
             ranked = presets_of_rank({c.preset: c.number for c in counts}, compared.comparison, compared.rank)
             return tuple(ranked) or None
     return None

@@ -57,6 +57,8 @@ def _followup(source: Source, lexemes: Sequence[Lexeme]) -> ast.Step | None:
         return ast.Read(ast.Thing(pronoun="them"))
     if (chosen := full_match(f"{_LEAD} {_SHOW} (?P<which>one|both|all|each) (of)? (PRON|DET two)? {_END}", lexemes)) is not None:
         return ast.ZoomTo(ast.Thing(pronoun="one" if chosen["which"][0].word == "one" else "both"))
+    if full_match(f"{_LEAD} look at_both (of)? (PRON)? {_END}", lexemes):
+        return ast.ZoomTo(ast.Thing(pronoun="both"))
     if search("one of (them|those|these)", lexemes):
         return ast.Unclear("Which one do you mean? Please describe it.")
     if any_of := full_match(
@@ -91,12 +93,14 @@ def _followup(source: Source, lexemes: Sequence[Lexeme]) -> ast.Step | None:
 
 
 def question_about_side(text: str, presets: tuple[str, ...]) -> tuple[ast.Step, ...] | None:
-    """Return the step of "what about the right?", which asks about a side of the picture and moves nothing; None for other texts."""
+    """Return the step of "what about the right?", which asks about a side of the picture; None for other texts."""
     match = full_match(f"{_LEAD_ABOUT} (PREP|on|at|in)* DET? (?P<side>{_SIDE}) (side|hand)* {_END}", lexemes_of(text, presets))
     if match is None:
         return None
     side = match["side"][0].word
-    place = f"in the {side}" if side in {"middle", "centre", "center"} else f"{'on' if side in {'left', 'right'} else 'at'} the {side}"
+    place = (
+        f"in the {side}" if side in {"middle", "centre", "center"} else f"{'on' if side in {'left', 'right'} else 'at'} the {side}"
+    )
     return (ast.WhatAbout(ast.Thing(predicate=place)),)
 
 

@@ -22,10 +22,11 @@ from scope_ptz.planner.grammar.binding.earlier_comparison import (
 )
 from scope_ptz.planner.grammar.binding.elliptic_questions import asks_colour, completed_question, item_of
 from scope_ptz.planner.grammar.binding.embedded_questions import direct_question
-from scope_ptz.planner.grammar.binding.focus import PLURAL, foci_of, things_to_add
+from scope_ptz.planner.grammar.binding.focus import OF_THEM, PLURAL, foci_of, things_to_add
 from scope_ptz.planner.grammar.binding.followup_steps import FollowUpSteps
 from scope_ptz.planner.grammar.binding.followups import is_other
 from scope_ptz.planner.grammar.binding.names import UnresolvedError
+from scope_ptz.planner.grammar.binding.narrowing import without_contradicted
 from scope_ptz.planner.grammar.binding.noun_heads import has_one, names_several
 from scope_ptz.planner.grammar.binding.offtopic import is_about_the_scene
 from scope_ptz.planner.grammar.binding.plain_questions import plain_question
@@ -296,8 +297,13 @@ class Resolver(FollowUpSteps):
         return (
             question
             if self.antecedent and _THE_THING_AND_IT.search(question)
-            else with_referents(question, lambda pronoun: self._item(question, pronoun) or self.referent_in_question(pronoun))
+            else with_referents(question, lambda pronoun: self._item(question, pronoun) or self._asked(question, pronoun))
         )
+
+    def _asked(self, question: str, pronoun: str) -> str:
+        """Return what a pronoun in a question refers to; after "which doors are open?", "are any closed?" is about all."""
+        described = self.referent_in_question(pronoun)
+        return without_contradicted(described, question) if pronoun == OF_THEM else described
 
     def _item(self, question: str, pronoun: str) -> str:
         """Return what the people spoken of wear or carry, if a question asks for its colour or says "it"; else nothing."""

@@ -129,6 +129,8 @@ def _read(said: str, preset_names: tuple[str, ...] | None, conversation: Sequenc
             steps = (ast.Total(()),)
         if about_side := question_about_side(said, preset_names or ()):
             steps = about_side
+        if conversation and steps and all(isinstance(step, ast.Report) for step in steps):
+            steps = followup_of(said, preset_names or ()) or steps  # "look at both" reports no calculation
         if steps is None and conversation:
             steps = followup_of(said, preset_names or ())
         if steps is None:
