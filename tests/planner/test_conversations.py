@@ -344,3 +344,17 @@ def test_the_other_one_of_many_is_asked_about() -> None:
     calls, reply = last_calls(*earlier, "and the other one?", looks=(True, 5, True))
     assert not calls
     assert reply.startswith("Which other person do you mean?")
+
+
+def test_the_other_one_of_three_is_not_the_one_looked_at_before() -> None:
+    earlier = ("how many workers are there?", "zoom in on the left one", "zoom in on the nearest one")
+    calls, reply = last_calls(*earlier, "and the other one?", looks=(3, True, True))
+    assert not calls
+    assert reply == "Which other worker do you mean? For example, the left one, the right one or the nearest one."
+
+
+@pytest.mark.parametrize(("number", "things"), [(2, ["left worker", "right worker"]), (4, [])])
+def test_them_are_all_zoomed_in_on_or_asked_about(number: int, things: list[str]) -> None:
+    calls, reply = last_calls("how many workers are there?", "zoom in on them", looks=(number, True))
+    assert [arguments["description"] for name, arguments in calls if name == "zoom_to_object"] == things
+    assert bool(things) != reply.endswith("Which of the 4 workers do you mean?")

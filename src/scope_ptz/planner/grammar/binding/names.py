@@ -203,8 +203,8 @@ class Names:
         things = dict.fromkeys(thing.lower() for thing in things_named(self.conversation))
         others = [thing for thing in things if thing != current.lower()]
         group = next((f for f in reversed(self.foci) if f.is_several and is_same_kind(f.description, current)), None)
-        is_of_many = group is not None and (group.number or 0) > 2 and not all(is_same_kind(t, current) for t in things)
-        is_kind = (named == "one" and not is_of_many) or (len(others) == 1 and head_noun(others[0]) == kind)
+        is_of_many = group is not None and (group.number or 0) > 2
+        is_kind = not is_of_many and (named == "one" or (len(others) == 1 and head_noun(others[0]) == kind))
         if is_kind and len(others) == 1 and current.lower() in things:
             return others[0]
         is_several = named in {"", "ones"} or names_several(named)

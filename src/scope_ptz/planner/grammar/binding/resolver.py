@@ -22,7 +22,7 @@ from scope_ptz.planner.grammar.binding.earlier_comparison import (
 )
 from scope_ptz.planner.grammar.binding.elliptic_questions import asks_colour, completed_question, item_of
 from scope_ptz.planner.grammar.binding.embedded_questions import direct_question
-from scope_ptz.planner.grammar.binding.focus import OF_THEM, PLURAL, foci_of, things_to_add
+from scope_ptz.planner.grammar.binding.focus import OF_THEM, PLURAL, foci_of, referent, things_to_add
 from scope_ptz.planner.grammar.binding.followup_steps import FollowUpSteps
 from scope_ptz.planner.grammar.binding.followups import is_other
 from scope_ptz.planner.grammar.binding.names import UnresolvedError
@@ -370,6 +370,10 @@ class Resolver(FollowUpSteps):
             raise UnresolvedError(f"I can centre on a thing, not on what is {relative[1]} it. By how many degrees shall I move?")
         if step.thing.pronoun in {"it", "that"} and not self.antecedent and self._is_about_presets():
             return self._gothere(ast.GoThere("winner"))  # "show me that one" after "which preset has the most?"
+        if step.thing.pronoun in {"they", "them", "these", "those"} and not (self.antecedent or step.thing.predicate):
+            found = referent(self.foci, step.thing.pronoun)
+            if found is not None and (found.number or 0) > 1:
+                return self._zooms_on_group("both")  # one close-up does not show them all
         if step.thing.pronoun in {"one", "both"} and self.topic:
             return self._zooms_on_group(step.thing.pronoun)
         widening = self._to_group_view() if has_one(step.thing.text) or is_other(step.thing.text) else []
