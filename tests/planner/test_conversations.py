@@ -188,3 +188,173 @@ def test_a_comparison_without_counts_is_asked_about() -> None:
 )
 def test_things_that_cannot_be_made_out_are_not_absent(instruction: str, looks: tuple[Any, ...], reply: str) -> None:
     assert last_calls(instruction, looks=looks)[1].startswith(reply)
+
+
+@pytest.mark.parametrize("question", ["which one has the most?", "which preset has the most people?"])
+@pytest.mark.parametrize(
+    ("found", "reply"),
+    [
+        (((4, False), (6, False)), "As far as I could see, preset highway had more people, with at least 6."),
+        ((2, 5), "Preset highway had more people, with 5."),
+        ((5, 5), "It is a tie between gate and highway, with 5 each."),
+    ],
+)
+def test_presets_are_compared_by_the_counts_of_the_tour(question: str, found: tuple[Any, ...], reply: str) -> None:
+    calls, said = last_calls("at each preset, count the people", question, looks=found)
+    assert not calls
+    assert said == reply
+
+
+@pytest.mark.parametrize("instruction", ["go to it", "go to that one", "show me that one", "take me to the busier one"])
+def test_the_preset_that_has_the_most_is_gone_to(instruction: str) -> None:
+    tour = "at each preset, count the people"
+    calls, _ = last_calls(tour, "which one has the most?", instruction, looks=((7, False), (3, False)))
+    assert calls == [("go_to_preset", {"name": "gate"})]
+
+
+def test_the_quieter_of_two_presets_needs_no_comparison_before() -> None:
+    calls, _ = last_calls("at each preset, count the people", "go to the quieter one", looks=(7, 3))
+    assert calls == [("go_to_preset", {"name": "highway"})]
+
+
+@pytest.mark.parametrize("instruction", ["go to it", "take me to the busier one"])
+def test_no_preset_is_gone_to_if_none_was_compared(instruction: str) -> None:
+    calls, reply = last_calls("is there a bus?", instruction, looks=(YES,))
+    assert not calls
+    assert reply.endswith(("?", "."))
+
+
+@pytest.mark.parametrize(
+    ("before", "asked", "expected"),
+    [
+        ("how many people are on the left?", "what about the right?", ("count_objects", "people on the right")),
+        ("what can you see?", "what about the left?", ("query_answer", "what can you see on the left?")),
+        ("describe the scene", "how about the middle?", ("query_answer", "what can you see in the middle?")),
+    ],
+)
+def test_a_side_of_the_picture_is_asked_about(before: str, asked: str, expected: tuple[str, str]) -> None:
+    calls, _ = last_calls(before, asked, looks=(3,) if before.startswith("how") else (YES,))
+    assert [(name, arguments.get("question", arguments.get("description"))) for name, arguments in calls] == [expected]
+
+
+@pytest.mark.parametrize("before", [(), ("pan left",)])
+def test_a_side_of_the_picture_moves_nothing(before: tuple[str, ...]) -> None:
+    calls, reply = last_calls(*before, "what about the right?")
+    assert not calls
+    assert reply.endswith("?")
+
+
+@pytest.mark.parametrize(
+    ("earlier", "looks"),
+    [
+        (("zoom in on the bus",), (True, 2)),
+        (("how much is the soup?", "go to the gate"), (YES, 2)),
+        (("read the sign", "pan left 20"), (YES, 2)),
+    ],
+)
+def test_other_things_are_counted_if_nothing_else_was_asked(earlier: tuple[str, ...], looks: tuple[Any, ...]) -> None:
+    calls, _ = last_calls(*earlier, "what about the cars?", looks=looks)
+    assert calls == [("count_objects", {"description": "cars", "view": "current"})]
+
+
+@pytest.mark.parametrize(
+    ("earlier", "question"),
+    [
+        (("how many people have umbrellas?", "is there a dog?"), "where is the dog?"),
+        (("how many taxis are there?", "is there a bus?"), "where is the bus?"),
+    ],
+)
+def test_where_is_about_the_thing_asked_about_last(earlier: tuple[str, ...], question: str) -> None:
+    calls, _ = last_calls(*earlier, "where?", looks=(3, YES))
+    assert calls == [("query_answer", {"question": question, "view": "current"})]
+
+
+def test_the_nearest_one_is_one_of_all_if_none_was_found() -> None:
+    calls, _ = last_calls("how many taxis are there?", "and the white ones?", "which one is the nearest?", looks=(3, 0, YES))
+    assert calls == [("query_answer", {"question": "which taxi is the nearest?", "view": "current"})]
+
+
+@pytest.mark.parametrize("asked", ["read the number plate", "what about the number plate?"])
+@pytest.mark.parametrize(
+    ("before", "vehicle"),
+    [
+        ("zoom in on the blue van", "blue van"),
+        ("zoom in on the farthest car", "car in the middle"),  # in the close-up, another car may be the farthest
+    ],
+)
+def test_the_number_plate_is_that_of_the_vehicle_looked_at(before: str, vehicle: str, asked: str) -> None:
+    calls, _ = last_calls(before, asked, looks=(True, YES))
+    assert calls == [("query_answer", {"question": f"What does the number plate of the {vehicle} say?", "view": "current"})]
+
+
+def test_the_number_plate_of_several_vehicles_is_not_that_of_one() -> None:
+    calls, _ = last_calls("how many cars are there?", "read the number plate", looks=(3, YES))
+    assert calls == [("query_answer", {"question": "What does the number plate say?", "view": "current"})]
+
+
+def test_its_part_is_the_part_spoken_of() -> None:
+    calls, _ = last_calls("zoom in on the van", "read the number plate", "what is its number plate?", looks=(True, YES, YES))
+    assert calls[0][1]["question"] == "what is the number plate of the van?"
+
+
+@pytest.mark.parametrize(
+    ("before", "asked", "question"),
+    [
+        ("what is behind the forklift?", "and in front of it?", "what is in front of the forklift?"),
+        ("is the red car the nearest?", "and the farthest?", "is the red car the farthest?"),
+        ("which dock doors are open?", "are any of them closed?", "are any of the dock doors closed?"),
+    ],
+)
+def test_the_same_is_asked_in_another_respect(before: str, asked: str, question: str) -> None:
+    calls, _ = last_calls(before, asked, looks=(YES, YES))
+    assert calls == [("query_answer", {"question": question, "view": "current"})]
+
+
+@pytest.mark.parametrize("asked", ["zoom in on both", "look at both"])
+def test_both_are_the_two_things_zoomed_in_on(asked: str) -> None:
+    calls, _ = last_calls("zoom in on the crane", "zoom in on the bus", asked, looks=(True,))
+    assert [arguments.get("description") for name, arguments in calls if name == "zoom_to_object"] == ["crane", "bus"]
+
+
+def test_both_after_a_single_thing_is_asked_about() -> None:
+    calls, reply = last_calls("zoom in on the bus", "zoom in on both", looks=(True,))
+    assert not calls
+    assert reply == "Which two things do you mean? Please name them."
+
+
+def test_both_sides_are_added() -> None:
+    sides = ("how many people are on the left?", "and on the right?")
+    _, reply = last_calls(*sides, "and both together?", looks=(2, 3, 2, 3))
+    assert "5 altogether" in reply
+
+
+def test_another_thing_is_followed_for_as_long_from_where_the_camera_is() -> None:
+    earlier = "follow the man with the clipboard for 5 seconds"
+    calls, _ = last_calls(earlier, "now the one with the wheelbarrow")
+    assert calls == [("track_object", {"description": "man with the wheelbarrow", "duration_s": 5})]
+
+
+def test_one_of_two_colours_is_of_the_kind_asked_about() -> None:
+    calls, _ = last_calls("is there a red car or a blue one?", "zoom in on the blue one", looks=(YES, True))
+    assert calls[-1] == ("zoom_to_object", {"description": "blue car"})
+
+
+def test_the_other_one_of_many_is_asked_about() -> None:
+    earlier = ("zoom in on the bus", "zoom out", "how many people are there?", "zoom in on the nearest one")
+    calls, reply = last_calls(*earlier, "and the other one?", looks=(True, 5, True))
+    assert not calls
+    assert reply.startswith("Which other person do you mean?")
+
+
+def test_the_other_one_of_three_is_not_the_one_looked_at_before() -> None:
+    earlier = ("how many workers are there?", "zoom in on the left one", "zoom in on the nearest one")
+    calls, reply = last_calls(*earlier, "and the other one?", looks=(3, True, True))
+    assert not calls
+    assert reply == "Which other worker do you mean? For example, the left one, the right one or the nearest one."
+
+
+@pytest.mark.parametrize(("number", "things"), [(2, ["left worker", "right worker"]), (4, [])])
+def test_them_are_all_zoomed_in_on_or_asked_about(number: int, things: list[str]) -> None:
+    calls, reply = last_calls("how many workers are there?", "zoom in on them", looks=(number, True))
+    assert [arguments["description"] for name, arguments in calls if name == "zoom_to_object"] == things
+    assert bool(things) != reply.endswith("Which of the 4 workers do you mean?")

@@ -210,3 +210,14 @@ def test_either_of_two_kinds_is_the_one_that_was_seen() -> None:
 
 def test_the_next_one_of_no_order_is_asked_about() -> None:
     assert last_turn("zoom in on the red sign", "and the next one?") == ([], "Which sign do you mean? Please describe it.")
+
+
+def test_a_thing_that_is_not_found_in_the_view_before_leaves_the_camera_there() -> None:
+    stage = Stage([3, True, False], lands=Pose(20, -5, 4), simulated=True)
+    first = stage.turn("how many workers are there?")
+    second = stage.turn("zoom in on the left one", (first,))
+    stage.lands = None
+    reply = stage.run("and the one with the wheelbarrow?", (first, second)).text
+    assert stage.pose == Pose()
+    assert "so the camera is back at the view before" in reply
+    assert "I went back" not in reply

@@ -60,6 +60,9 @@ ZOOM, COUNT, ASK, TRACK = "zoom_to_object", "count_objects", "query_answer", "tr
         ("is the pedestrian with a green umbrella walking?", "pedestrian with a green umbrella"),
         ("who has an umbrella?", "person with an umbrella"),
         ("what colour is the worker's helmet?", "worker"),
+        ("does the man in the red jacket have a helmet?", "man in the red jacket"),
+        ("is the man in the red jacket walking?", "man in the red jacket"),
+        ("is the man in a red jacket?", "man"),
         ("who's there?", None),
         ("what text can you see?", None),
         ("is it raining?", None),
@@ -75,6 +78,7 @@ def test_a_question_is_about_a_thing(question: str, description: str | None) -> 
     [
         ("what colour is the car?", "green lorry", "what colour is the green lorry?"),
         ("how much is the lettuce?", "apples", "how much are the apples?"),
+        ("is there a dog?", "dog on the right", "is there a dog on the right?"),
         ("what does the middle sign say?", "left sign", "what does the left sign say?"),
     ],
 )
@@ -200,7 +204,8 @@ def test_a_count_is_followed_up(follow_up: str, expected: tuple[str, str]) -> No
 def test_shares_are_shares_of_the_same_whole() -> None:
     turns = ("how many workers are there?", "how many of them wear helmets?", "how many of them are walking?")
     assert last_turn(*turns, count=(8, 6, 1))[0] == [(COUNT, "workers walking")]
-    assert last_turn(*turns[:2], "zoom in on them", count=(8, 6))[0] == [(ZOOM, "workers wearing helmets")]
+    asked = last_turn(*turns[:2], "zoom in on them", count=(8, 6))
+    assert asked == ([], "Which of the 6 workers wearing helmets do you mean?")
     assert last_turn("how many cars are there?", "how many of them are black?", "and blue?", count=(8, 6, 1))[0] == [
         (COUNT, "blue cars")
     ]
@@ -238,7 +243,7 @@ def test_a_command_is_followed_up(before: str, follow_up: str, expected: tuple[s
 def test_another_one_is_asked_about() -> None:
     assert last_turn("how many signs are there?", "zoom in on one of them", count=3)[0] == [(ZOOM, "sign")]
     assert last_turn("zoom in on the red sign", "and the other one") == (
-        [], "Which other sign do you mean? Please describe it.",
+        [], "Which other sign do you mean? For example, the left one, the right one or the nearest one.",
     )  # fmt: skip
 
 
@@ -307,7 +312,10 @@ def test_the_other_thing_is_zoomed_in_on(instructions: tuple[str, ...], expected
 @pytest.mark.parametrize(
     ("instructions", "question"),
     [
-        (("zoom in on the dog", "no, the other dog"), "Which other dog do you mean? Please describe it."),
+        (
+            ("zoom in on the dog", "no, the other dog"),
+            "Which other dog do you mean? For example, the left one, the right one or the nearest one.",
+        ),
         (("zoom in on the dog", "and the others?"), "Which other dogs do you mean? Please describe them."),
         (("zoom in on the stall", "and the one next to it?"), "Which other stall do you mean? Please describe it."),
         (("how many dogs are there?", "zoom in on both"), "Which of the 3 dogs do you mean?"),

@@ -6,12 +6,17 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import TYPE_CHECKING
 
 from scope_ptz.english import singular
 from scope_ptz.english.grammar.questions import question_tree as tree
 from scope_ptz.english.grammar.questions.question_parser import parse_description, parse_question
 from scope_ptz.english.grammar.questions.recognition import is_description
-from scope_ptz.planner.grammar.binding.noun_heads import names_several, without_predicate
+from scope_ptz.planner.grammar.binding.narrowing import is_state, is_worn
+from scope_ptz.planner.grammar.binding.noun_heads import is_ranked, names_several, without_predicate
+
+if TYPE_CHECKING:
+    from scope_ptz.planner.grammar.instruction_tree import Thing
 
 _MAX_WORDS = 16  # longer questions are not searched, because the search takes quadratic time
 _ARTICLE = re.compile(
@@ -37,6 +42,7 @@ _LEFT = re.compile(r" (?:gone|going|got to|off to|now)$", re.IGNORECASE)
 
 _NUMBERED = re.compile(r"(?P<kind>[a-z][a-z -]*) \d+", re.IGNORECASE)
 _PLAIN_ARTICLES = frozenset({"the", "any", "some"})
+_ENDS_RANKED = re.compile(r"(?P<asked>.+ )[\w-]+")
 _VERB_BEFORE = re.compile(r"\b(?:is|are|does|do|has|have) $", re.IGNORECASE)
 _VERBS = {"has": "with", "have": "with", "wear": "wearing", "carry": "carrying", "hold": "holding"}
 _PERSON = frozenset({"anyone", "anybody", "someone", "somebody", "everyone", "everybody"})
@@ -114,12 +120,30 @@ def with_other_thing(question: str, description: str) -> str | None:
             return f"{question[: thing.end]}'s {owned['part']}{question[thing.end + part.end() :]}"
     article = _ARTICLE.match(asked_words)
     is_numbered = description.split(" ")[-1].isdigit()  # "dock 3"
-    kept = "" if is_numbered else article[0] if article and article[0].lower().strip() in _PLAIN_ARTICLES else "the "
+    is_part = description.lower().startswith(f"{thing.description.lower()} ")  # "a dog on the right"
+    is_kept = article is not None and (is_part or article[0].lower().strip() in _PLAIN_ARTICLES)
+    kept = "" if is_numbered else article[0] if article is not None and is_kept else "the "
     before = _VERB_BEFORE.search(question[: thing.start])
     lead = question[: thing.start]
     if before is not None:
         lead = lead[: before.start()] + _form(before[0], plural=names_several(description))
     return f"{lead}{kept}{description}{question[thing.end :]}"
+
+
+def with_other_predicate(question: str, named: Thing) -> str:
+    """Return a question that asks the same about the same thing in another respect; empty if the words name another thing.
+
+    After "what is behind the van?", "in front of it" asks "what is in front of it?". After "is the red car the nearest?", "the
+    farthest" asks "is the red car the farthest?".
+    """
+    asked = parse_question(question)
+    if isinstance(asked, tree.Describe) and any(isinstance(test, tree.Relation) for test in asked.tests) and named.predicate:
+        tests = {type(test) for phrase in parse_description(f"thing {named.predicate}").phrases for test in phrase.tests}
+        return f"what is {named.predicate}?" if tests == {tree.Relation} else ""
+    ranked = _ENDS_RANKED.fullmatch(question.rstrip("?!. "))
+    is_yes_no = isinstance(asked, tree.YesNo) and any(isinstance(test, tree.Order) for test in asked.tests)
+    is_rank = " " not in named.text and is_ranked(f"{named.text} thing")
+    return f"{ranked['asked']}{named.text}?" if ranked is not None and is_yes_no and is_rank else ""
 
 
 def _form(verb: str, *, plural: bool) -> str:
@@ -166,8 +190,16 @@ def _asked(text: str, asked: tree.Question | None, start: int, end: int) -> Aske
     description = _LEFT.sub("", noun_phrase) if isinstance(asked, tree.Where) else noun_phrase
     if isinstance(asked, tree.YesNo):
         with_rest = without_predicate(text[start:])
-        is_marked = text[end:].startswith(" with ") and len(with_rest) < len(text) - start  # "is the man with an umbrella walking?"
+        is_marked = (text[end:].startswith(" with ") or is_worn(with_rest)) and len(with_rest) < len(
+            text
+        ) - start  # "is the man with an umbrella walking?"
         marked = with_rest if is_marked else _with_first_test(text[start:], asked.tests)
+        if (
+            isinstance(asked.tests[-1:][0] if asked.tests else None, tree.Has)
+            and (worn := _before_verb(text[start:]))
+            and is_worn(worn)
+        ):
+            marked = worn  # "does the man in the red jacket have a helmet?"
         description = marked or without_predicate(noun_phrase)
         if not description:
             return None
@@ -179,6 +211,12 @@ def _asked(text: str, asked: tree.Question | None, start: int, end: int) -> Aske
     if (owner := _OWNER.match(description)) is not None:
         return AskedThing(owner[1], start, end - len(description) + len(owner[1]))  # "what colour is the worker's helmet?"
     return AskedThing(_ANYONE.sub("person", description), start, end)
+
+
+def _before_verb(text: str) -> str:
+    """Return the words before the verb of having: "man in the red hat" of "man in the red hat have a bag"; else nothing."""
+    before, verb, _ = text.partition(" have ")
+    return before if verb else ""
 
 
 def _with_first_test(text: str, tests: Sequence[tree.Test]) -> str:
@@ -218,5 +256,7 @@ def _with_predicate(text: str, tests: Sequence[tree.Test]) -> AskedThing | None:
     verb = {"doesn't": "without", "don't": "without"}.get(verb, verb)
     if first.lower() in {"wears", "wear", "carries", "carry", "holds", "hold", "has", "have"}:
         verb, rest = re.sub(r"ies$", "y", first.lower()).removesuffix("s") if first.lower() != "has" else "has", tail
+    if verb in {"is", "are"} and " " not in rest and is_state(rest.lower()):
+        return AskedThing(f"{rest} {noun}", start, start)  # "which dock doors are open?"
     joint = _VERBS.get(re.sub(r"ies$", "y", verb).removesuffix("s") if verb not in {"has", "is"} else verb, "")
     return AskedThing(" ".join(x for x in (noun, joint, rest) if x), start, start)

@@ -65,13 +65,11 @@ def counts_at_presets(conversation: Sequence[PastTurn]) -> list[EarlierCount]:
 
 
 def counts_of_tour(counts: Sequence[EarlierCount]) -> list[EarlierCount]:
-    """Return the counts of the last turn that counted, if it counted the same objects at several presets; otherwise none.
-
-    None if any of them is only a lower bound.
-    """
+    """Return the counts of the last turn that counted, if it counted the same objects at several presets; otherwise none."""
+    if not counts:
+        return []
     tour = [count for count in counts if count.turn == counts[-1].turn and count.description == counts[-1].description]
-    is_known = len({count.preset for count in tour}) > 1 and all(count.complete for count in tour)
-    return tour if is_known else []
+    return tour if len({count.preset for count in tour}) > 1 else []
 
 
 def counts_to_add(counts: Sequence[EarlierCount]) -> list[EarlierCount]:
@@ -79,7 +77,7 @@ def counts_to_add(counts: Sequence[EarlierCount]) -> list[EarlierCount]:
     if not counts:
         return []
     if tour := counts_of_tour(counts):
-        return tour
+        return tour if all(count.complete for count in tour) else []
     two = last_two_presets(counts)
     latest = {count.preset: count for count in counts if count.description == counts[-1].description}
     added = [latest[preset] for preset in two] if two is not None else []
@@ -108,10 +106,7 @@ def earlier_winners(conversation: Sequence[PastTurn], presets: tuple[str, ...]) 
         compared = next((found for step in reversed(steps or ()) if (found := _comparison_of(step)) is not None), None)
         if compared is not None and not compared.any_of:
             counts = counts_at_presets(conversation[: index + 1])
-            if index > last:
-                counts = counts_of_tour(counts) if counts else []
-            else:
-                counts = [count for count in counts if count.turn == index]
+            counts = counts_of_tour(counts) if index > last else [count for count in counts if count.turn == index]
             ranked = presets_of_rank({c.preset: c.number for c in counts}, compared.comparison, compared.rank)
             return tuple(ranked) or None
     return None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from scope_ptz.planner.grammar.binding.focus import Focus
+from scope_ptz.planner.grammar.binding.followups import WHERE
 from scope_ptz.planner.grammar.binding.narrowing import last_item
 from scope_ptz.planner.grammar.binding.noun_heads import names_person, names_several
 from scope_ptz.planner.grammar.execution.answer_sentences import noun
@@ -27,6 +28,9 @@ def completed_question(question: str, last: Focus) -> str:
         question: The question.
         last: What the turn before was about.
     """
+    if question == WHERE:
+        thing = last.one if last.number == 1 else last.description
+        return f"where {'are' if names_several(thing) else 'is'} the {thing}?"
     lexemes = lexemes_of(question)
     if full_match(_COLOUR, lexemes):
         worn = last_item(last.question.rstrip("?!. ")) if names_person(last.description) else ""

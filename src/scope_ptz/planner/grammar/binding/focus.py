@@ -14,6 +14,8 @@ from scope_ptz.planner.grammar.binding.answered_things import single_thing, stat
 from scope_ptz.planner.grammar.binding.asked_things import asked_thing, two_things
 from scope_ptz.planner.grammar.binding.narrowing import are_exclusive
 from scope_ptz.planner.grammar.binding.noun_heads import (
+    bare_noun,
+    has_one,
     head_noun,
     may_name_person,
     names_animal,
@@ -102,7 +104,10 @@ def things_named(conversation: Sequence[PastTurn]) -> tuple[str, ...]:
         for outcome in (outcome for exchange in turn.exchanges for outcome in exchange.outcomes):
             question = str(outcome.call.arguments.get("question", ""))
             both = two_things(question) if question else ()
-            named += both or [focus.description for focus in _foci_of_look(outcome)]
+            is_missing = (
+                outcome.result is not None and outcome.result.get("found") is False
+            )  # a thing that is not there is no other one
+            named += () if is_missing else both or [focus.description for focus in _foci_of_look(outcome)]
     return tuple(thing for thing in dict.fromkeys(named) if not names_several(thing))
 
 
@@ -159,7 +164,10 @@ def _foci_of_look(outcome: ToolOutcome) -> list[Focus]:
 def _foci_of_answer(question: str, answer: str) -> list[Focus]:
     thing = asked_thing(question)
     if thing is None:  # "is there a dog or a fox?"
-        single = single_thing(answer) if len(two_things(question)) > 1 else ""
+        both = two_things(question)
+        if len(both) > 1 and has_one(both[1]):  # "is there a red car or a blue one?"
+            return [Focus(noun(bare_noun(both[0]), 2), None, "query_answer", question)]
+        single = single_thing(answer) if len(both) > 1 else ""
         return [Focus(single, 1, "query_answer", question)] if single else []
     description, number = without_number(thing.description)
     is_about_others = isinstance(parse_question(question), tree.Describe)  # "what is to the left of the van?"

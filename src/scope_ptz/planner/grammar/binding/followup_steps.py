@@ -7,16 +7,18 @@ from abc import abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+from scope_ptz.english.grammar.questions import question_tree as tree
+from scope_ptz.english.grammar.questions.question_parser import parse_question
 from scope_ptz.planner.grammar import instruction_tree as ast
-from scope_ptz.planner.grammar.binding.asked_things import with_other_thing
-from scope_ptz.planner.grammar.binding.focus import PLURAL, foci_of, latest_counts, like_to_know, which_one
+from scope_ptz.planner.grammar.binding.asked_things import with_other_predicate, with_other_thing
+from scope_ptz.planner.grammar.binding.focus import PLURAL, foci_of, latest_counts, like_to_know, things_named, which_one
 from scope_ptz.planner.grammar.binding.followups import is_adjective, is_other
-from scope_ptz.planner.grammar.binding.names import Names, UnresolvedError
+from scope_ptz.planner.grammar.binding.names import NUMBER_PLATES, Names, UnresolvedError
 from scope_ptz.planner.grammar.binding.narrowing import is_region, narrowed, with_region_noun
 from scope_ptz.planner.grammar.binding.noun_heads import has_one, head_noun, is_same_kind, names_person, names_several
 from scope_ptz.planner.grammar.binding.pairs import members_of
 from scope_ptz.planner.grammar.binding.pending_questions import pending_step, with_thing
-from scope_ptz.planner.grammar.binding.preset_matching import match_preset
+from scope_ptz.planner.grammar.binding.preset_matching import match_exactly
 from scope_ptz.planner.grammar.execution.answer_sentences import noun
 
 _ONE = re.compile(r"\bone\b", re.IGNORECASE)
@@ -47,9 +49,14 @@ class FollowUpSteps(Names):
             one, other = (ast.Thing(thing, definite=True) for thing in members_of(self.foci[index]))
             self.antecedent = other.text
             return [*self._to_group_view(), ast.ZoomTo(one), ast.WiderView(), ast.ZoomTo(other)]
-        group = next((f for f in reversed(self.foci) if f.is_several and is_same_kind(f.description, last.description)), None)
-        if pronoun == "both" and group is not None:
-            raise UnresolvedError(which_one(group))
+        named = things_named(self.conversation)[-2:]
+        if pronoun == "both" and len(named) == 2 and last.one.lower() == named[1].lower():
+            one, other = (ast.Thing(thing, definite=True) for thing in named)
+            self.antecedent = other.text
+            return [*self._to_group_view(), ast.ZoomTo(one), ast.WiderView(), ast.ZoomTo(other)]
+        if pronoun == "both":
+            group = next((f for f in reversed(self.foci) if f.is_several and is_same_kind(f.description, last.description)), None)
+            raise UnresolvedError("Which two things do you mean? Please name them." if group is None else which_one(group))
         self.antecedent = noun(last.description, 1) if last.is_several else last.one
         return [ast.ZoomTo(ast.Thing(self.antecedent, definite=True))]
 
@@ -64,17 +71,28 @@ class FollowUpSteps(Names):
         return [ast.WiderView()]
 
     def _whatabout(self, step: ast.WhatAbout) -> Sequence[ast.Step]:
-        if step.thing.text and self.presets and (name := match_preset(step.thing.text, self.presets)):
+        if step.thing.text and self.presets and (name := match_exactly(step.thing.text, self.presets)):
             return [ast.GoToPreset(ast.PresetRef(name, explicit=True)), *self._last_question()]
         pending, topic = pending_step(self.conversation, self.presets or ()), self.topic
+        if step.thing.predicate and is_region(step.thing.predicate) and not pending:
+            if not self.foci and not self._last_question():
+                raise UnresolvedError("What would you like to know about that part of the picture?")
+            if self._asked_what_is_seen():
+                return [ast.Ask(f"what can you see {step.thing.predicate}?", "current")]
         if self.foci and self._is_region_without_noun(step.thing):
             step = ast.WhatAbout(ast.Thing(predicate=step.thing.text))
         if step.thing.predicate and (counted := self._count_before_moves(step.thing.predicate)):
             return self._count(ast.Count((ast.Thing(narrowed(counted, step.thing.predicate)),)))
         if step.thing.predicate and not pending and len(counted_together := self._counted_together()) > 1:
             return self._count(ast.Count(tuple(ast.Thing(narrowed(each, step.thing.predicate)) for each in counted_together)))
+        if step.thing.text.lower() in NUMBER_PLATES and not pending:
+            return [ast.Read(self.thing(step.thing), self._view(None))]
+        if self.foci and not pending and (rephrased := with_other_predicate(self.foci[-1].question, step.thing)):
+            return self._bind(ast.Ask(rephrased))
         described = self._with_noun_if_bare(step.thing)
-        widening = self._to_group_view() if has_one(described.text) or is_other(described.text) else []
+        is_pursuit = bool(self.foci) and self.foci[-1].look == "track_object"  # the next thing is followed from where the camera is
+        is_among = (has_one(described.text) or is_other(described.text)) and not is_pursuit
+        widening = self._to_group_view() if is_among else []
         thing = self.thing(described)
         if not self.conversation:
             return self._count(ast.Count((thing,)))
@@ -86,7 +104,37 @@ class FollowUpSteps(Names):
             raise UnresolvedError(like_to_know(thing.text))  # a count says nothing about one thing
         if step.thing.pronoun == "both" and self.foci and self.foci[-1].look in {"count_objects", "query_answer"}:
             raise UnresolvedError(f"What shall I do with the {thing.text}?")
+        if self._says_nothing_about(described, thing):
+            return self._count(ast.Count((thing,)))
         return [*widening, self._last_look_at(thing, topic)]
+
+    def _says_nothing_about(self, named: ast.Thing, thing: ast.Thing) -> bool:
+        """Return whether the last look does not say what to do with a thing that is named by its own noun, so that it is counted.
+
+        That is so for several things after a close-up of one, and after a move for things of another kind: "what about the cars?"
+        does not ask for their price because that of the soup was asked for elsewhere.
+        """
+        last = self.foci[-1] if self.foci else None
+        if (
+            last is None
+            or not named.text
+            or has_one(named.text)
+            or is_other(named.text)
+            or is_same_kind(thing.text, last.description)
+        ):
+            return False
+        if last.look in {"zoom_to_object", "track_object"}:
+            return names_several(thing.text)
+        has_moved = bool(self.conversation) and not foci_of(self.conversation[-1:])
+        return has_moved and last.look == "query_answer" and not isinstance(parse_question(last.question), tree.Exists)
+
+    def _asked_what_is_seen(self) -> bool:
+        """Return whether the last look of the conversation was the question what there is to see, which names no thing."""
+        last = self._last_question()[:1]
+        asked = parse_question(last[0].question) if last and isinstance(last[0], ast.Ask) else None
+        return (
+            isinstance(asked, tree.Describe) and asked.what is None and not any(isinstance(t, tree.Relation) for t in asked.tests)
+        )
 
     def _counted_together(self) -> tuple[str, ...]:
         """Return the things of several kinds that the last turn counted: cars and vans; nothing if it did anything else."""
@@ -133,7 +181,7 @@ class FollowUpSteps(Names):
             case "zoom_to_object":
                 return ast.ZoomTo(thing)
             case "track_object":
-                return ast.Track(thing)
+                return ast.Track(thing, self._last_duration_s())
             case "query_answer" if last is not None:
                 question = with_other_thing(last.question, thing.text)
                 verb = "are" if names_several(thing.text) else "is"
@@ -141,6 +189,12 @@ class FollowUpSteps(Names):
                 return ast.Ask(question or f"{'Who' if is_person else 'What'} {verb} the {thing.text}?", self._view(None))
             case _:
                 return ast.Count((thing,), self._view(None))
+
+    def _last_duration_s(self) -> float:
+        """Return for how many seconds the last pursuit of the conversation lasted."""
+        outcomes = [o for turn in self.conversation for exchange in turn.exchanges for o in exchange.outcomes]
+        durations = (o.call.arguments.get("duration_s") for o in reversed(outcomes) if o.call.name == "track_object")
+        return float(next((duration for duration in durations if duration), ast.Track(ast.Thing()).seconds))
 
     def _last_question(self) -> list[ast.Step]:
         """Return the last count or question of the conversation as a step."""

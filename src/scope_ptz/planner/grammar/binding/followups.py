@@ -21,6 +21,8 @@ _LEAD = "(FILLER|COMMA|AND|BUT|NOW|LEADFILLER|FIRSTLY|now|ok|okay|then|so|also|w
 _REJECTING = "(FILLER|COMMA)* (no|nope|nah) ((COMMA|DASH)+|(?=the))"
 """The beginning of a follow-up that corrects the turn before: "no, the woman on the left"."""
 
+_LEAD_ABOUT = "(FILLER|COMMA|AND|BUT|now|so|ok|okay|then)* (what_about|how_about)"
+_SIDE = "left|right|middle|centre|center|top|bottom"
 _END = "(FILLER|COMMA|QUESTION|STOP|NOW|then|VISIBLE)*"
 _SHOW = "((ZOOM IN|ZOOM_IN) (on|onto|to)|show (me|us)?|SHOW (me|us)?|look at|LOOK_AT)"
 _DETERMINER = "(DET|EVERY)"
@@ -28,6 +30,9 @@ _PREPOSITIONS = frozenset({
     "in", "on", "at", "near", "behind", "beside", "under", "above", "below", "between", "inside", "outside", "with", "without",
     "by", "to", "next",
 })  # fmt: skip
+WHERE = "where?"
+"""The question that leaves out the thing, which is that of the turn before."""
+
 _MAX_LEXEMES = 12  # longer texts are not short follow-ups
 
 
@@ -47,11 +52,13 @@ def followup_of(text: str, presets: tuple[str, ...]) -> tuple[ast.Step, ...] | N
 
 def _followup(source: Source, lexemes: Sequence[Lexeme]) -> ast.Step | None:
     if full_match(f"{_LEAD} (where|where_is) (PRON|exactly|BE)* {_END}", lexemes):
-        return ast.Ask("where are they?")
+        return ast.Ask(WHERE)
     if full_match(f"{_LEAD} READ (them|those|these|both|all) (of|all|both|them|those|these|out|aloud)* {_END}", lexemes):
         return ast.Read(ast.Thing(pronoun="them"))
     if (chosen := full_match(f"{_LEAD} {_SHOW} (?P<which>one|both|all|each) (of)? (PRON|DET two)? {_END}", lexemes)) is not None:
         return ast.ZoomTo(ast.Thing(pronoun="one" if chosen["which"][0].word == "one" else "both"))
+    if full_match(f"{_LEAD} look at_both (of)? (PRON)? {_END}", lexemes):
+        return ast.ZoomTo(ast.Thing(pronoun="both"))
     if search("one of (them|those|these)", lexemes):
         return ast.Unclear("Which one do you mean? Please describe it.")
     if any_of := full_match(
@@ -85,13 +92,24 @@ def _followup(source: Source, lexemes: Sequence[Lexeme]) -> ast.Step | None:
     return ast.WhatAbout(ast.Thing(predicate=predicate)) if is_led and is_predicate(predicate) else None
 
 
+def question_about_side(text: str, presets: tuple[str, ...]) -> tuple[ast.Step, ...] | None:
+    """Return the step of "what about the right?", which asks about a side of the picture; None for other texts."""
+    match = full_match(f"{_LEAD_ABOUT} (PREP|on|at|in)* DET? (?P<side>{_SIDE}) (side|hand)* {_END}", lexemes_of(text, presets))
+    if match is None:
+        return None
+    side = match["side"][0].word
+    place = (
+        f"in the {side}" if side in {"middle", "centre", "center"} else f"{'on' if side in {'left', 'right'} else 'at'} the {side}"
+    )
+    return (ast.WhatAbout(ast.Thing(predicate=place)),)
+
+
 def question_about_topic(text: str, presets: tuple[str, ...]) -> tuple[ast.Step, ...] | None:
     """Return the steps of "what about the left one, what colour is it?": the thing, and the question about it; None for others."""
     lexemes = trimmed(lexemes_of(text, presets), "STOP", "QUESTION")
     if not 0 < len(lexemes) <= _MAX_LEXEMES + 4:
         return None
-    lead = "(FILLER|COMMA|AND|BUT|now|so)* (what_about|how_about)"
-    match = full_match(f"{lead} DET (?P<noun>_+?) (COMMA|DASH|QUESTION)+ (AND)? (?P<asked>_+)", lexemes)
+    match = full_match(f"{_LEAD_ABOUT} DET (?P<noun>_+?) (COMMA|DASH|QUESTION)+ (AND)? (?P<asked>_+)", lexemes)
     if match is None or not any(x.has("PRON", "HOWMANY") for x in match["asked"]) or any(x.has("COMMA") for x in match["noun"]):
         return None
     source = Source(text, presets)

@@ -30,9 +30,12 @@ from scope_ptz.planner.grammar.binding.noun_heads import (
     bare_noun,
     has_one,
     head_noun,
+    is_ranked,
+    is_same_kind,
     may_name_person,
     names_person,
     names_several,
+    names_vehicle,
     with_ones_replaced,
 )
 from scope_ptz.planner.grammar.binding.pairs import members_of, names_neighbour, neighbour_of, other_of, pair_in, taken_of
@@ -49,6 +52,12 @@ _OBJECT_PRONOUN = re.compile(
     r"\b(?:of|to|behind|beside|near|above|below|under|on|in|by|around|with|opposite|from|than) (?P<pronoun>it|him|her|them)$",
     re.IGNORECASE,
 )
+
+
+NUMBER_PLATES = frozenset(
+    {"plate", "number plate", "licence plate", "license plate", "registration plate", "registration", "registration number"}
+)
+"""Names of the part of a vehicle that identifies it."""
 
 
 class UnresolvedError(Exception):
@@ -193,7 +202,9 @@ class Names:
         kind = head_noun(noun(current if named in {"", "one", "ones"} else named, 1))
         things = dict.fromkeys(thing.lower() for thing in things_named(self.conversation))
         others = [thing for thing in things if thing != current.lower()]
-        is_kind = named == "one" or (len(others) == 1 and head_noun(others[0]) == kind)
+        group = next((f for f in reversed(self.foci) if f.is_several and is_same_kind(f.description, current)), None)
+        is_of_many = group is not None and (group.number or 0) > 2
+        is_kind = not is_of_many and (named == "one" or (len(others) == 1 and head_noun(others[0]) == kind))
         if is_kind and len(others) == 1 and current.lower() in things:
             return others[0]
         is_several = named in {"", "ones"} or names_several(named)
@@ -202,7 +213,8 @@ class Names:
         if not is_several and (other := self._other_of_two(current, "" if named == "one" else named)):
             return other
         which = f"Which other {noun(bare_noun(current) if named in {'', 'one', 'ones'} else named, 2 if is_several else 1)}"
-        raise UnresolvedError(f"{which} do you mean? Please describe {'them' if is_several else 'it'}.")
+        how = "Please describe them." if is_several else "For example, the left one, the right one or the nearest one."
+        raise UnresolvedError(f"{which} do you mean? {how}")
 
     def _other_of_two(self, current: str, kind: str) -> str:
         """Return the other one of two things that were counted or listed; empty if there are no two.
@@ -265,9 +277,23 @@ class Names:
 
     def _with_owner(self, thing: ast.Thing) -> str:
         """Return the description of a part of an earlier thing: "its sign" becomes "sign of the post office"."""
+        if thing.text.lower() in NUMBER_PLATES and not self.antecedent and (owner := self._owner_of_plate()):
+            return f"{thing.text} of the {owner}"
         if not thing.owner or self.antecedent or not self.foci:
             return thing.text
         return f"{thing.text} of the {self.referent(thing.owner)}"
+
+    def _owner_of_plate(self) -> str:
+        """Return the one vehicle that was looked at last, whose number plate is meant; empty if it is not clear which one.
+
+        After a close-up of the farthest car, that car is in the middle of the picture, and another one may now be the farthest.
+        """
+        last = self.foci[-1] if self.foci else None
+        has_moved = bool(self.conversation) and not foci_of(self.conversation[-1:])
+        if last is None or has_moved or last.is_several or not names_vehicle(last.one):
+            return ""
+        is_centred = last.look == "zoom_to_object" and is_ranked(last.one)
+        return f"{bare_noun(last.one)} in the middle" if is_centred else last.one
 
     def place(self, ref: ast.PresetRef) -> ast.PresetRef:
         """Return a reference with the exact name of the preset that it means."""

@@ -76,6 +76,18 @@ def _excludes(one: str, other: str) -> bool:
     return {one, other} <= COLOURS or any({one, other} <= states for states in _EXCLUSIVE_STATES)
 
 
+def is_state(word: str) -> bool:
+    """Return whether a word names a state that excludes another one: "open", "parked"."""
+    return any(word in states for states in _EXCLUSIVE_STATES)
+
+
+def without_contradicted(description: str, question: str) -> str:
+    """Return a description without words that a question contradicts: "doors" if it asks which open doors are closed."""
+    asked = re.findall(r"[\w-]+", question.lower())
+    head, rest = head_and_rest(description)
+    return " ".join(w for w in head.split(" ") if not any(_excludes(w.lower(), a) for a in asked if a != w.lower())) + rest
+
+
 def are_exclusive(one: str, other: str) -> bool:
     """Return whether nothing can fit both of two descriptions, so that their counts can be added.
 

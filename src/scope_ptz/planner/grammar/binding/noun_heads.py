@@ -100,6 +100,11 @@ def names_animal(description: str) -> bool:
     return _is_kind(description, "animal")
 
 
+def names_vehicle(description: str) -> bool:
+    """Return whether a description names a vehicle, which has a number plate."""
+    return _is_kind(description, "vehicle")
+
+
 def may_name_person(description: str) -> bool:
     """Return whether "he" or "she" may refer to a thing: to a person, an animal, or something that the lexicon does not know."""
     if names_person(description) or names_animal(description):

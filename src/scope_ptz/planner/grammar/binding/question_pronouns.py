@@ -132,7 +132,14 @@ def with_referents(question: str, referent: Referent) -> str:
 def _insert_owner(pieces: list[str], words: Sequence[str], i: int, description: str) -> None:
     """Replace "his" by "the worker's", or "his jacket" by "the jacket of the worker in the van"."""
     place = 2 * i + 1
-    if not head_and_rest(description)[1]:
+    part, of_whole = head_and_rest(description)
+    if (
+        part.lower().split(" ") == list(words[i + 1 : i + 1 + len(part.split(" "))]) and of_whole
+    ):  # "its plate" after "the plate of the van"
+        pieces[place] = "the"
+        pieces[2 * (i + len(part.split(" "))) + 1] += of_whole
+        return
+    if not of_whole and not is_ranked(description):
         pieces[place] = f"the {description}'s" if not description.endswith("s") else f"the {description}'"
         return
     size = 1 if i + 2 >= len(words) or words[i + 1] in _PROPERTY or "NOUN" not in parts_of_speech(words[i + 2]) else 2

@@ -49,7 +49,7 @@ _ANY_THERE = re.compile(
 _DESCRIBE = re.compile(r"describe(?: each(?: one| view| of them)?)?\W*", re.IGNORECASE)
 _BEFORE_CAMERA = "(FILLER)* what BE (in_front_of_you|in_front_of_us|in_front_of_the_camera) (FILLER|NOW|QUESTION|STOP)*"
 _TOTAL = (
-    "(FILLER|AND|COMMA|so|then|ok|okay)* HOWMANY (BE|DET|PRON|there|that)* "
+    "(FILLER|AND|COMMA|so|then|ok|okay)* (HOWMANY|both|all) (BE|DET|PRON|there|that|of|two)* "
     "(altogether|together|in_total|in_all|in total|in all|combined|total) (FILLER|then|QUESTION|STOP)*"
 )
 _AT_PRESET = re.compile(r"(.+?) (at|from|in) (the )?([\w -]+?)( preset| view| position)?\?*", re.IGNORECASE)

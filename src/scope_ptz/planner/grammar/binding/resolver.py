@@ -13,6 +13,7 @@ from scope_ptz.planner.grammar.binding.asked_things import asked_thing
 from scope_ptz.planner.grammar.binding.commands import standing_command
 from scope_ptz.planner.grammar.binding.continuations import commands_of
 from scope_ptz.planner.grammar.binding.earlier_comparison import (
+    EarlierCount,
     counts_of_tour,
     counts_to_add,
     earlier_winners,
@@ -21,10 +22,11 @@ from scope_ptz.planner.grammar.binding.earlier_comparison import (
 )
 from scope_ptz.planner.grammar.binding.elliptic_questions import asks_colour, completed_question, item_of
 from scope_ptz.planner.grammar.binding.embedded_questions import direct_question
-from scope_ptz.planner.grammar.binding.focus import PLURAL, foci_of, things_to_add
+from scope_ptz.planner.grammar.binding.focus import OF_THEM, PLURAL, foci_of, referent, things_to_add
 from scope_ptz.planner.grammar.binding.followup_steps import FollowUpSteps
 from scope_ptz.planner.grammar.binding.followups import is_other
 from scope_ptz.planner.grammar.binding.names import UnresolvedError
+from scope_ptz.planner.grammar.binding.narrowing import without_contradicted
 from scope_ptz.planner.grammar.binding.noun_heads import has_one, names_several
 from scope_ptz.planner.grammar.binding.offtopic import is_about_the_scene
 from scope_ptz.planner.grammar.binding.plain_questions import plain_question
@@ -52,6 +54,7 @@ from scope_ptz.planner.grammar.binding.unknowable import why_not_about_the_scene
 from scope_ptz.planner.grammar.binding.whereabouts import report_of_last_following, thing_that_went
 from scope_ptz.planner.grammar.binding.zoom_factors import FILLS_THE_VIEW
 from scope_ptz.planner.grammar.execution.answer_sentences import noun
+from scope_ptz.planner.grammar.execution.comparison_sentences import presets_of_rank
 
 _THE_THING_AND_IT = re.compile(r"\bthe \w+.*\b(it|they|them)\b")
 _RELATIVE_POSITION = re.compile(
@@ -177,6 +180,8 @@ class Resolver(FollowUpSteps):
         return [ast.GoToPreset(self.place(ref))]
 
     def _gothere(self, step: ast.GoThere) -> Sequence[ast.Step]:
+        if step.wanted in {"more", "fewer"}:
+            return [ast.GoToPreset(ast.PresetRef(self._preset_with(step.wanted), explicit=True))]
         if self.has_compared:
             return [step]
         if (winners := earlier_winners(self.conversation, self.presets or ())) is not None:
@@ -185,9 +190,25 @@ class Resolver(FollowUpSteps):
             return [ast.GoToPreset(ast.PresetRef(winners[0], explicit=True))]
         if left_view_won(self.conversation, self.presets or ()):
             return [ast.Back()]
+        if step.wanted:
+            raise UnresolvedError("Where shall I go? Please name a preset, or say what I shall zoom in on.")
         if not self.preset:
             raise UnresolvedError("Where is 'there'? Please name a preset.")
         return [ast.GoToPreset(ast.PresetRef(self.preset, explicit=True))]
+
+    def _preset_with(self, comparison: str) -> str:
+        """Return the preset at which the last turn that counted found more, or fewer, things than at the others.
+
+        Raises:
+            UnresolvedError: Nothing was counted at several presets, or the counts are equal.
+        """
+        counts = {count.preset: count.number for count in counts_of_tour(self.earlier_counts)}
+        ranked = presets_of_rank(counts, "more" if comparison == "more" else "fewer", 1)
+        if not ranked:
+            raise UnresolvedError("What shall I count to tell which is busier: vehicles or people?")
+        if len(ranked) > 1:
+            raise UnresolvedError(f"Which one do you mean? {listing(ranked, 'and')} show the same number.")
+        return ranked[0]
 
     def _snap(self, step: ast.Snap) -> Sequence[ast.Step]:
         if step.of is None:
@@ -276,8 +297,13 @@ class Resolver(FollowUpSteps):
         return (
             question
             if self.antecedent and _THE_THING_AND_IT.search(question)
-            else with_referents(question, lambda pronoun: self._item(question, pronoun) or self.referent_in_question(pronoun))
+            else with_referents(question, lambda pronoun: self._item(question, pronoun) or self._asked(question, pronoun))
         )
+
+    def _asked(self, question: str, pronoun: str) -> str:
+        """Return what a pronoun in a question refers to; after "which doors are open?", "are any closed?" is about all."""
+        described = self.referent_in_question(pronoun)
+        return without_contradicted(described, question) if pronoun == OF_THEM else described
 
     def _item(self, question: str, pronoun: str) -> str:
         """Return what the people spoken of wear or carry, if a question asks for its colour or says "it"; else nothing."""
@@ -293,16 +319,15 @@ class Resolver(FollowUpSteps):
         return last.description if names_several(last.description) else ""
 
     def _referent_of_ones(self, pronoun: str) -> str:  # noqa: ARG002 - has the signature of a referent
-        return self.topic
+        last = self.foci[-1] if self.foci and not self.antecedent else None
+        return last.whole if last is not None and last.whole and last.number == 0 else self.topic  # the taxis, if none is white
 
     def _earlier_comparison(self, comparison: ast.Comparison) -> ast.WhichPreset | ast.Compare:
         """Return the comparison of what was counted last: two things in one view, or the same thing at several presets."""
         if len(two_things := things_to_add(self.conversation)) == 2:
             return ast.Compare(ast.Thing(two_things[0]), ast.Thing(two_things[1]), comparison)
-        if self.earlier_counts and (tour := counts_of_tour(self.earlier_counts)):
-            places = tuple(ast.PresetRef(count.preset, explicit=True) for count in tour)
-            numbers = tuple(count.number for count in tour)
-            return ast.WhichPreset(ast.Thing(tour[0].description), comparison, places, numbers=numbers)
+        if tour := counts_of_tour(self.earlier_counts):
+            return _with_counts(ast.WhichPreset(ast.Thing(tour[0].description), comparison), tour)
         if self.earlier_counts and (two := last_two_presets(self.earlier_counts)) is not None:
             places = tuple(ast.PresetRef(name, explicit=True) for name in two)
             return ast.WhichPreset(ast.Thing(self.earlier_counts[-1].description), comparison, places)
@@ -343,10 +368,20 @@ class Resolver(FollowUpSteps):
             raise UnresolvedError(f"I do not know that preset. Presets: {known}. Which one do you mean?")
         if relative := _RELATIVE_POSITION.match(step.thing.text):
             raise UnresolvedError(f"I can centre on a thing, not on what is {relative[1]} it. By how many degrees shall I move?")
+        if step.thing.pronoun in {"it", "that"} and not self.antecedent and self._is_about_presets():
+            return self._gothere(ast.GoThere("winner"))  # "show me that one" after "which preset has the most?"
+        if step.thing.pronoun in {"they", "them", "these", "those"} and not (self.antecedent or step.thing.predicate):
+            found = referent(self.foci, step.thing.pronoun)
+            if found is not None and (found.number or 0) > 1:
+                return self._zooms_on_group("both")  # one close-up does not show them all
         if step.thing.pronoun in {"one", "both"} and self.topic:
             return self._zooms_on_group(step.thing.pronoun)
         widening = self._to_group_view() if has_one(step.thing.text) or is_other(step.thing.text) else []
         return [*widening, ast.ZoomTo(self.thing(step.thing))]
+
+    def _is_about_presets(self) -> bool:
+        """Return whether the last turn answered which preset has the most."""
+        return earlier_winners(self.conversation, self.presets or ()) is not None
 
     def _track(self, step: ast.Track) -> Sequence[ast.Step]:
         return [replace(step, thing=self.thing(step.thing))]
@@ -410,6 +445,12 @@ class Resolver(FollowUpSteps):
         counted = [count for count in self.earlier_counts if count.description == thing.text]
         if step.of_two and not step.places and counted and (two := last_two_presets(counted)) is not None:
             return [replace(step, thing=thing, places=tuple(ast.PresetRef(name, explicit=True) for name in two))]
+        tour = counts_of_tour(self.earlier_counts)
+        is_last = bool(tour) and not any(turn.exchanges for turn in self.conversation[tour[0].turn + 1 :])
+        if not step.places and is_last and tour[0].description == thing.text:
+            is_every = self.presets is None or {count.preset for count in tour} == set(self.presets)
+            if is_every and not (step.any_of or step.yes_no):
+                return [_with_counts(replace(step, thing=thing), tour)]
         return [replace(step, thing=thing, places=self._places(step.places))]
 
     def _firstwith(self, step: ast.FirstWith) -> Sequence[ast.Step]:
@@ -471,6 +512,16 @@ def _answered_by(condition: ast.Condition, count: ast.Count) -> ast.Condition | 
         ast.Quantity(): ast.Answered(), ast.Quantity("==", 0): ast.Negated(ast.Answered())
     }  # fmt: skip
     return answers.get(condition.quantity)
+
+
+def _with_counts(step: ast.WhichPreset, counts: Sequence[EarlierCount]) -> ast.WhichPreset:
+    """Return a comparison that uses the counts of an earlier turn, so that the camera need not move."""
+    return replace(
+        step,
+        places=tuple(ast.PresetRef(count.preset, explicit=True) for count in counts),
+        numbers=tuple(count.number for count in counts),
+        lower_bounds=frozenset(count.preset for count in counts if not count.complete),
+    )
 
 
 def _target(step: ast.Step) -> str:

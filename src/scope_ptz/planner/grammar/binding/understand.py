@@ -11,7 +11,7 @@ from scope_ptz.english.grammar.numbers import NUMBER_WORDS
 from scope_ptz.planner.grammar import instruction_tree as ast
 from scope_ptz.planner.grammar.answerable import answerable_questions, is_whole_question
 from scope_ptz.planner.grammar.binding.continuations import NOTHING_DONE, continuation_of
-from scope_ptz.planner.grammar.binding.followups import followup_of, question_about_topic
+from scope_ptz.planner.grammar.binding.followups import followup_of, question_about_side, question_about_topic
 from scope_ptz.planner.grammar.binding.names import UnresolvedError
 from scope_ptz.planner.grammar.binding.offtopic import REFUSAL, is_harmful
 from scope_ptz.planner.grammar.binding.question_text import is_request_for_total, lacks_noun
@@ -137,6 +137,10 @@ def _read(said: str, preset_names: tuple[str, ...] | None, conversation: Sequenc
         steps = question_about_topic(said, preset_names or ()) or parsed.steps
         if conversation and is_request_for_total(said):
             steps = (ast.Total(()),)
+        if about_side := question_about_side(said, preset_names or ()):
+            steps = about_side
+        if conversation and steps and all(isinstance(step, ast.Report) for step in steps):
+            steps = followup_of(said, preset_names or ()) or steps  # "look at both" reports no calculation
         if steps is None and conversation:
             steps = followup_of(said, preset_names or ())
         if steps is None:

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 _AIMING = frozenset({"zoom_to_object", "track_object"})
 _OTHER_PLACE = frozenset({"go_to_preset", "go_home"})
+_WENT_BACK = "I went back to the view before"
 _RETURN_FIRST = '. If it was in the view before, say "go back" first'
 
 
@@ -53,7 +54,7 @@ class CloseUpSteps(RunState):
         """Return to the view before the close-ups, in which the things of the next steps were chosen."""
         if self._may_widen():
             yield from self._to_wider_view()
-            self._note("I went back to the view before")
+            self._note(_WENT_BACK)
 
     def _may_widen(self) -> bool:
         """Return whether the camera is at a close-up, and may leave it without being told to.
@@ -81,7 +82,7 @@ class CloseUpSteps(RunState):
             result = yield from self._perception_call("zoom_to_object", description=text)
             if result is not None and result.get("found"):
                 start = wider or start
-                self._note("I went back to the view before")
+                self._note(_WENT_BACK)
             else:
                 yield from self._camera_call("adjust_ptz", **return_arguments(start, self.pose, self.limits))
                 self.wider_view, views = wider, "in this view or in the one before"
@@ -90,7 +91,11 @@ class CloseUpSteps(RunState):
             self._not_found.add(text)
             if result is not None:
                 hint = _RETURN_FIRST if self.wider_view is not None and not self.may_go_closer else ""
-                self._note(f"I could not find the {text} {views}, so the camera stayed where it was{hint}")
+                has_gone_back = self.notes[-1:] == [_WENT_BACK]
+                stays = "is back at the view before" if has_gone_back else "stayed where it was"
+                if has_gone_back:
+                    self.notes.pop()
+                self._note(f"I could not find the {text} {views}, so the camera {stays}{hint}")
             return
         self._note_close_up(step.thing, start, result)
 

@@ -140,14 +140,16 @@ def best_preset_text(step: ast.WhichPreset, counts: Mapping[str, int], ranked: S
     if not ranked:
         return f"There are only {len(counts)} presets to compare"
     if len(ranked) > 1:
-        return f"It is a tie between {english.listing(list(ranked))}"
+        return f"It is a tie between {english.listing(list(ranked))}{f', with {counts[ranked[0]]} each' if step.numbers else ''}"
     nth = "" if step.rank == 1 else f"{_ordinal(step.rank)} "
     if len(counts) == 2 and step.rank == 1:
         amount: str = step.comparison
     else:
         amount = f"the {nth}{'most' if step.comparison == 'more' else 'fewest'}"
     if step.numbers:
-        return f"Preset {ranked[0]} had {amount} {phrases.noun(step.thing.text, 2)}, with {counts[ranked[0]]}"
+        least = "at least " if ranked[0] in step.lower_bounds else ""
+        had = f"preset {ranked[0]} had {amount} {phrases.noun(step.thing.text, 2)}, with {least}{counts[ranked[0]]}"
+        return f"as far as I could see, {had}" if step.lower_bounds else had
     return f"Preset {ranked[0]} shows {amount} {phrases.noun(step.thing.text, 2)}"
 
 

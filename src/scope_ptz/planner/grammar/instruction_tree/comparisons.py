@@ -34,6 +34,7 @@ class WhichPreset:
         rank: The requested place in the order: 1 for the most, 2 for the second most.
         numbers: How many objects earlier turns have counted at each of the presets, so that the camera need not move; empty if they
             must be counted.
+        lower_bounds: The presets at which more of the objects may be than ``numbers`` says.
         of_two: Whether the wording compares two presets: "which preset has more cars?", unlike "... the most cars?".
     """
 
@@ -45,6 +46,7 @@ class WhichPreset:
     yes_no: bool = False
     rank: int = 1
     numbers: tuple[int, ...] = ()
+    lower_bounds: frozenset[str] = frozenset()
     of_two: bool = field(default=False, compare=False)
 
 

@@ -137,7 +137,14 @@ class GoToPreset:
 
 @dataclass(frozen=True, slots=True)
 class GoThere:
-    """Go to the preset that was mentioned last, or to the preset that won a comparison."""
+    """Go to the preset that was mentioned last, or to the preset that won a comparison.
+
+    Attributes:
+        wanted: Which preset alone is meant: the one that won a comparison ("go to it"), or the one at which an earlier turn counted
+            more or fewer things than at the others ("go to the busier one"). Empty if any preset that was mentioned is meant.
+    """
+
+    wanted: Literal["", "winner", "more", "fewer"] = ""
 
 
 @dataclass(frozen=True, slots=True)

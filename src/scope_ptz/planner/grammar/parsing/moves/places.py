@@ -95,6 +95,14 @@ def go_step(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
         lexemes,
     ) and any(x.has("SWITCH", "CARRY") for x in lexemes):
         return GoThere()
+    if full_match("(FILLER|FIRSTLY)* (SWITCH|CARRY|goto) (me|us|CAMERA|back|over|FILLER)* (to)? it (FILLER|NOW|then)*", lexemes):
+        return GoThere("winner")
+    if ranked := full_match(
+        "(FILLER|FIRSTLY)* (SWITCH|CARRY|goto|SHOW) (me|us|CAMERA|back|over|FILLER)* (to)? the "
+        "(?P<way>busier|busiest|fuller|fullest|quieter|quietest|emptier|emptiest) (one|PRESETNOUN|VIEWNOUN)? (FILLER)*",
+        lexemes,
+    ):
+        return GoThere("fewer" if ranked["way"][0].word.startswith(("quiet", "empt")) else "more")
     return None
 
 
