@@ -50,7 +50,7 @@ def _phrases() -> tuple[Mapping[tuple[str, ...], tuple[str, str]], int]:
 
 def tokenise(text: str) -> list[Token]:
     """Return the typed tokens of a description or question."""
-    words = _without_frame_phrases(split(text))
+    words = _without_there(_without_frame_phrases(split(text)))
     table, _ = _phrases()
     tokens: list[Token] = []
     i = 0
@@ -185,6 +185,30 @@ def _without_frame_phrases(words: list[str]) -> list[str]:
         result.append(words[i])
         i += 1
     return result
+
+
+def _without_there(words: list[str]) -> list[str]:
+    """Drop "there" and "up there" where they mean the picture: "are the people there wearing helmets?".
+
+    It is kept after a form of "be" ("is there a van?", "who is there?"), and where it is the predicate ("is anyone there?").
+    """
+    kept: list[str] = []
+    last = len([word for word in words if word != "?"]) - 1
+    for i, word in enumerate(words):
+        is_existential = i == 0 or words[i - 1] in _BE
+        is_predicate = i == last and words[0] in _BE and "there" not in kept
+        if word != "there" or is_existential or is_predicate:
+            kept.append(word)
+            continue
+        while len(kept) > 1 and kept[-1] in _BEFORE_THERE:
+            kept.pop()
+    return kept
+
+
+_BE = frozenset({"is", "are", "was", "were", "be", "isn't", "aren't", "not", "and", "if", "whether", "that", ","})
+"""Words after which "there" says that something exists."""
+
+_BEFORE_THERE = frozenset({"up", "down", "over", "out", "in", "from", "along", "back"})
 
 
 def _ends_with_place(words: list[str], index: int) -> bool:

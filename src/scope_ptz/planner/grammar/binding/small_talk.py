@@ -148,7 +148,8 @@ def asks_to_repeat_reply(instruction: str) -> bool:
 
 
 _ASKED_BEFORE = (
-    "(FILLER|COMMA)* what DOV SELF (just|FILLER)* (ask|TELL|want|request) (you|me|for|to do)* (?P<first>first|FIRSTLY|at first|first of all)? "
+    "(FILLER|COMMA)* what DOV SELF (just|FILLER)* (ask|TELL|want|request) (you|me|for|to do)* "
+    "(?P<first>first|FIRSTLY|at first|first of all)? "
     "(last|before|earlier|just|now|NOW|BEFORE|FILLER|STOP|QUESTION)*"
 )
 
