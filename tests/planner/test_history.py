@@ -412,3 +412,9 @@ def test_a_direction_after_a_target_is_relative() -> None:
     stage = Stage(pose=Pose(10, 5, 1))
     talk(stage, "pan to 34 and tilt down 7")
     assert stage.pose == Pose(34, -2, 1)
+
+
+def test_where_the_camera_looks_is_said_from_the_last_preset() -> None:
+    assert talk(Stage(), "go to the gate", "where are you looking?")[-1].reply.startswith("The camera is at preset gate: ")
+    reply = talk(Stage(), "go to the gate", "pan left 20 and tilt down 3", "where are you looking now?")[-1].reply
+    assert reply.startswith("I am looking 20 degrees to the left of and 3 degrees below preset gate: the camera is at pan -20.0")

@@ -183,3 +183,7 @@ def test_a_question_that_is_not_understood_gets_an_example_about_the_same_thing(
 )
 def test_the_examples_suit_the_kind_of_thing(question: str, example: str) -> None:
     assert answerable_questions(question).endswith(f'or "{example}".')
+
+
+def test_what_is_not_counted_is_not_offered_to_be_counted() -> None:
+    assert answerable_questions("any smoke from the chimney?").startswith('I can answer, for example: "is there any smoke?"')
