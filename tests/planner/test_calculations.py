@@ -8,6 +8,7 @@ from scope_ptz.geometry import Limits, Pose
 from scope_ptz.planner.grammar import instruction_tree as ast
 from scope_ptz.planner.grammar.execution.program import Program
 from scope_ptz.planner.grammar.execution.run_state import AssumedOutcome
+from tests.planner.stage import Stage
 
 GATE, YARD, DOCKS, ROAD = (ast.PresetRef(name) for name in ("gate", "yard", "docks", "road"))
 CARS, VANS = ast.Thing("cars"), ast.Thing("vans")
@@ -136,3 +137,27 @@ def test_counts_on_a_tour_are_reported_together() -> None:
         pass
     assert calls == ["gate", "count", "yard", "count", "docks", "count", "gate"]
     assert program.answer() == "I can see 2 cars at gate, none at yard and 1 at docks. I went to preset gate."
+
+
+MINIMUM = "because there may be more"
+
+
+@pytest.mark.parametrize(
+    ("instruction", "looks", "expected"),
+    [
+        ("are there more vans than cars?", ((5, False), (2, True)), "Yes: I can see at least 5 vans and 2 cars in this view."),
+        ("how many more vans than cars are there?", ((5, False), (2, True)), MINIMUM),
+        ("how many vans and cars are there altogether?", ((5, False), (2, True)), "which makes at least 7 altogether"),
+        (
+            "which preset has more vans?",
+            ((5, False), (2, True)),
+            "I can see at least 5 vans at gate and 2 vans at highway. Preset gate",
+        ),
+        ("which preset has more vans?", ((5, False), (2, False)), "As far as I can see, preset gate shows more vans."),
+        ("which preset has more vans?", ((2, False), (2, False)), "I cannot tell which, because there may be more"),
+        ("which preset has more vans?", ((2, True), (2, True)), "It is a tie between gate and highway."),
+        ("which preset has more vans?", ((0, False), (2, True)), "I can see no vans clearly at gate and 2 vans at highway."),
+    ],
+)
+def test_minimum_counts_stay_minimum_counts(instruction: str, looks: tuple[tuple[int, bool], ...], expected: str) -> None:
+    assert expected in Stage(looks).run(instruction).text

@@ -32,8 +32,8 @@ def last_calls(*instructions: str, looks: tuple[Any, ...] = (1,)) -> tuple[list[
         (("pan left 20", "another 7", "again"), {"pan_deg": -7}),
         (("zoom in", "a bit more"), {"zoom_factor": 1.25}),
         (("pan left 20", "more"), {"pan_deg": -20}),
-        (("pan left 20", "the other way", "30"), {"pan_deg": 30}),
-        (("pan left 20", "the other way", "again"), {"pan_deg": -20}),
+        (("pan left 20", "pan sideways", "the other way", "30"), {"pan_deg": 30}),
+        (("pan left 20", "the other way", "again"), {"pan_deg": 20}),
     ],
 )
 def test_a_turn_continues_the_last_move(instructions: tuple[str, ...], arguments: dict[str, float]) -> None:
@@ -58,9 +58,9 @@ def test_more_of_nothing_is_asked_about(before: str) -> None:
     assert reply.endswith("?")
 
 
-def test_the_other_way_asks_how_far() -> None:
-    assert last_calls("pan left 20", "the other way") == ([], "By how many degrees shall I pan right?")
-    assert last_calls("zoom in 3x", "the other way") == ([], "By what factor shall I zoom out?")
+def test_the_other_way_asks_how_far_once_other_words_came_between() -> None:
+    assert last_calls("pan left 20", "pan", "the other way") == ([], "By how many degrees shall I pan right?")
+    assert last_calls("zoom in 3x", "pan", "the other way") == ([], "By what factor shall I zoom out?")
 
 
 def test_it_is_the_thing_that_was_asked_about() -> None:
@@ -358,3 +358,65 @@ def test_them_are_all_zoomed_in_on_or_asked_about(number: int, things: list[str]
     calls, reply = last_calls("how many workers are there?", "zoom in on them", looks=(number, True))
     assert [arguments["description"] for name, arguments in calls if name == "zoom_to_object"] == things
     assert bool(things) != reply.endswith("Which of the 4 workers do you mean?")
+
+
+def test_a_thing_is_named_once_for_the_condition_and_the_close_up() -> None:
+    instruction = "zoom in on the bus if there is one, otherwise go home"
+    assert last_calls(instruction, looks=(1, True))[0][-1] == ("zoom_to_object", {"description": "bus"})
+    assert last_calls(instruction, looks=(0,))[0][-1] == ("go_home", {})
+
+
+@pytest.mark.parametrize("instruction", ["zoom in on it 3x", "zoom in 3x on the van", "zoom in on the van by 3x"])
+def test_a_factor_for_a_close_up_of_a_thing_is_asked_about(instruction: str) -> None:
+    calls, reply = last_calls("is there a van?", instruction, looks=(YES,))
+    assert not calls
+    assert reply == "A thing I zoom in on fills the view. Shall I do that, or zoom where I look now?"
+
+
+@pytest.mark.parametrize(
+    ("instructions", "expected"),
+    [
+        (("zoom in on the statue", "now on the fountain"), ("zoom_to_object", {"description": "fountain"})),
+        (("zoom in on the red car", "no not that, the green car"), ("zoom_to_object", {"description": "green car"})),
+        (
+            ("how many people are in the left half?", "sorry, the right half"),
+            ("count_objects", {"description": "people in the right half", "view": "current"}),
+        ),
+    ],
+)
+def test_the_same_is_done_with_another_thing(instructions: tuple[str, ...], expected: tuple[str, dict[str, Any]]) -> None:
+    assert last_calls(*instructions, looks=(True,))[0][-1] == expected
+
+
+def test_half_of_a_turn_is_asked_about() -> None:
+    assert last_calls("pan left 20", "half of that") == ([], "Shall I pan left 10 degrees instead, or 10 degrees more?")
+    assert last_calls("pan left 20", "half of that", "instead")[0] == [("adjust_ptz", {"pan_deg": 10})]
+    assert last_calls("pan left 20", "half of that", "more")[0] == [("adjust_ptz", {"pan_deg": -10})]
+
+
+def test_still_begins_a_question() -> None:
+    calls, _ = last_calls("track the van", "still see it?", looks=(YES,))
+    assert calls == [("query_answer", {"question": "can you still see the van?", "view": "current"})]
+
+
+def test_nothing_is_followed_until_something_happens() -> None:
+    calls, reply = last_calls("is there a worker?", "follow him until he leaves", looks=(YES,))
+    assert not calls
+    assert reply == "I follow things for a time that you give me. For how many seconds shall I follow it?"
+
+
+def test_what_else_there_is_is_described() -> None:
+    calls, _ = last_calls("how many vans are there?", "what else is there?", looks=(1, YES))
+    assert calls == [("query_answer", {"question": "Describe the scene.", "view": "current"})]
+
+
+def test_earlier_messages_are_recalled() -> None:
+    assert last_calls("pan left 20", "tilt up 5", "what did I ask first?") == ([], 'Your first message was "pan left 20".')
+    assert last_calls("pan left 20", "tilt up 5", "what did I ask last?") == ([], 'Your last message was "tilt up 5".')
+
+
+@pytest.mark.parametrize("question", ["when will the gate be finished?", "how long will it take?", "when is the gate ready?"])
+def test_questions_about_the_future_move_nothing(question: str) -> None:
+    calls, reply = last_calls("pan left 20", question)
+    assert not calls
+    assert reply.startswith("I cannot know when something will happen.")

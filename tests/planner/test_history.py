@@ -47,6 +47,10 @@ def test_the_first_move_of_a_conversation_is_undone(move: str, undo: str) -> Non
         (("pan right 20", "go back", "back again"), 20),
         (("pan right 20", "go back", "and back again", "undo"), 0),
         (("pan right 20", "and back again"), 0),
+        (("pan right 20", "pan left 5", "go back", "go back again"), 0),
+        (("pan right 20", "go back", "go back again"), 0),
+        (("pan right 20", "pan left 5", "tilt up 5", "go back two steps"), 20),
+        (("pan right 20", "pan left 5", "go all the way back to where we started"), 0),
     ],
 )
 def test_undo_walks_back_through_the_moves(instructions: tuple[str, ...], pan_deg: float) -> None:
@@ -183,12 +187,20 @@ def test_a_viewpoint_without_a_preset_cannot_be_returned_to() -> None:
         (("pan left 20", "that's the wrong way"), Pose(20)),
         (("pan left 20", "now the other way"), Pose(0)),
         (("pan left 20", "and the other way"), Pose(0)),
-        (("pan left 20", "the other way", "by 25 degrees"), Pose(5)),
-        (("pan left 20", "the other way", "the same"), Pose(0)),
+        (("pan left 20", "the other way"), Pose(20)),
+        (("tilt down 5", "other way", "again"), Pose(0, 10)),
+        (("pan left 20", "pan sideways", "the other way", "by 25 degrees"), Pose(5)),
+        (("pan left 20", "pan sideways", "the other way", "sorry, 10"), Pose(-10)),
+        (("pan left 20", "pan sideways", "the other way", "the same"), Pose(0)),
+        (("tilt up 5", "tilt down instead"), Pose(0, -5)),
+        (("tilt up 5", "tilt down instead", "again"), Pose(0, -10)),
+        (("pan left 20", "tilt up instead"), Pose(0, 10)),
+        (("zoom in", "again", "no, 2x"), Pose(0, 0, 2)),
+        (("pan left 20", "again", "again", "no, 20"), Pose(-20)),
         (("tilt up 50", "no, 10"), Pose(0, 10)),
         (("tilt up 50", "wrong way"), Pose(0, -50)),
         (("zoom in 3x", "no, 2x"), Pose(0, 0, 2)),
-        (("zoom in 4x", "zoom out a bit", "the other way", "2"), Pose(0, 0, 5)),
+        (("zoom in 4x", "zoom out a bit", "zoom sideways", "the other way", "2"), Pose(0, 0, 5)),
         (("zoom in 2x", "zoom out a bit", "no, the other way"), Pose(0, 0, 2.5)),
         (("zoom in 2x", "zoom in 2x", "no, back out"), Pose(0, 0, 2)),
         (("zoom in 4x", "zoom out 2x", "no, back out"), Pose(0, 0, 1)),
@@ -357,7 +369,7 @@ def test_what_was_taken_back_is_not_repeated(between: tuple[str, ...], again: st
     assert reply.endswith("?")
 
 
-@pytest.mark.parametrize("asked", ["tilt", "pan right 10 or 20", "the other way"])
+@pytest.mark.parametrize("asked", ["tilt", "pan right 10 or 20"])
 def test_again_refers_to_the_last_command_that_was_carried_out(asked: str) -> None:
     stage = Stage()
     talk(stage, "pan left 20", asked, "again")
@@ -400,3 +412,9 @@ def test_a_direction_after_a_target_is_relative() -> None:
     stage = Stage(pose=Pose(10, 5, 1))
     talk(stage, "pan to 34 and tilt down 7")
     assert stage.pose == Pose(34, -2, 1)
+
+
+def test_where_the_camera_looks_is_said_from_the_last_preset() -> None:
+    assert talk(Stage(), "go to the gate", "where are you looking?")[-1].reply.startswith("The camera is at preset gate: ")
+    reply = talk(Stage(), "go to the gate", "pan left 20 and tilt down 3", "where are you looking now?")[-1].reply
+    assert reply.startswith("I am looking 20 degrees to the left of and 3 degrees below preset gate: the camera is at pan -20.0")

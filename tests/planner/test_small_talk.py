@@ -28,7 +28,7 @@ def reply_to_first_step(instruction: str) -> str:
 @pytest.mark.parametrize(
     "instruction",
     [
-        "thanks", "thanks, that's all", "many thanks, good night", "thank you for your help", "cheers, bye",
+        "thanks", "thanks, that's all", "thank you for your help",
         "no thanks, that's all", "thank you, that was very helpful", "that's all for now, thank you",
     ],
 )  # fmt: skip
@@ -45,6 +45,9 @@ def test_thanks_are_answered_and_nothing_else(instruction: str) -> None:
         ("thank you very much, you are doing great", "You're welcome."),
         ("what a great job", "Thank you. "),
         ("you did well", "Thank you. "),
+        ("cheers, bye", "Goodbye."),
+        ("many thanks, good night", "Goodbye."),
+        ("radio check, over", "Receiving you. "),
     ],
 )
 def test_pleasantries_are_returned(instruction: str, reply: str) -> None:
@@ -180,3 +183,7 @@ def test_a_question_that_is_not_understood_gets_an_example_about_the_same_thing(
 )
 def test_the_examples_suit_the_kind_of_thing(question: str, example: str) -> None:
     assert answerable_questions(question).endswith(f'or "{example}".')
+
+
+def test_what_is_not_counted_is_not_offered_to_be_counted() -> None:
+    assert answerable_questions("any smoke from the chimney?").startswith('I can answer, for example: "is there any smoke?"')

@@ -19,6 +19,14 @@ _NEVER_GENERATED = frozenset({"persons", "busses"})  # plurals that are recognis
 PLURALS: Mapping[str, str] = MappingProxyType({one: many for many, one in SINGULARS.items() if many not in _NEVER_GENERATED})
 """The plural forms of nouns with an irregular plural."""
 
+UNCOUNTABLE = frozenset({
+    "smoke", "steam", "water", "litter", "rubbish", "trash", "garbage", "graffiti", "snow", "ice", "debris", "traffic",
+    "damage", "dust", "fog", "mist", "mud", "oil", "foam", "sand", "gravel", "hay", "straw", "grass", "luggage", "equipment",
+    "machinery", "furniture", "scaffolding", "fencing", "movement", "activity", "vandalism", "flooding", "cargo", "freight",
+    "timber", "livestock", "wildlife",
+})  # fmt: skip
+"""Nouns for what is not counted: "some smoke", not "1 smoke"."""
+
 _INVARIANT = frozenset({
     "bus", "grass", "gas", "glass", "press", "sheep", "deer", "series", "traffic", "vms", "this", "is", "its", "was", "has", "does",
     "chassis", "cctv", "fencing", "scaffolding", "yes", "lens", "cross", "bass", "pass", "less", "across", "cattle", "machinery",

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from scope_ptz import english
 from scope_ptz.english.grammar.lexicon import lexicon
+from scope_ptz.english.nouns import UNCOUNTABLE
 from scope_ptz.planner.grammar.lexing.lexer import lexemes_of
 
 _MIN_SHARE = 0.7
@@ -36,6 +37,8 @@ def answerable_questions(question: str) -> str:
 
 def _questions_about(thing: str) -> tuple[str, str]:
     """Return two questions about a kind of thing, given as a noun in the singular."""
+    if thing in UNCOUNTABLE:
+        return f"is there any {thing}?", f"where is the {thing}?"
     kinds = lexicon().kinds(lexicon().concept(thing) or "thing")
     if "person" in kinds:
         second = f"what is the {thing} doing?"

@@ -34,6 +34,7 @@ _FRAME_FILLERS = frozenset({
 })  # fmt: skip
 _PLACE_WORDS = frozenset(["site", "area", "place", "premises", "property", "worksite"])
 _FRAME_PREPOSITIONS = frozenset(["in", "of", "from", "on", "across", "within", "throughout", "inside", "around", "for"])
+_NO_OBJECTS = frozenset({"lane", "lanes", "?"})  # words after an "outside" that is no preposition
 _LITERAL_TERMINATORS = frozenset({"visible", "there", "?"})  # words that end the literal after "says"
 _PARTICLES = frozenset(
     ["on", "off", "up", "down", "in", "out"]
@@ -44,13 +45,14 @@ _PARTICLES = frozenset(
 def _phrases() -> tuple[Mapping[tuple[str, ...], tuple[str, str]], int]:
     """Return every closed-class phrase with its type and value, and the length of the longest."""
     mention: dict[tuple[str, ...], tuple[str, str]] = {(word,): ("SAYS", word) for word in ("mention", "mentions", "mentioning")}
-    table = {**question_phrases(), **mention, (",",): ("COMMA", ","), (";",): ("COMMA", ";")}
+    outside = dict.fromkeys((("outside",), ("outside", "of"), ("just", "outside")), ("REL", "near"))
+    table = {**question_phrases(), **mention, **outside, (",",): ("COMMA", ","), (";",): ("COMMA", ";")}
     return table, max(map(len, table))
 
 
 def tokenise(text: str) -> list[Token]:
     """Return the typed tokens of a description or question."""
-    words = _without_frame_phrases(split(text))
+    words = _without_there(_without_frame_phrases(split(text)))
     table, _ = _phrases()
     tokens: list[Token] = []
     i = 0
@@ -105,6 +107,8 @@ def _add_closed_class(tokens: list[Token], words: list[str], i: int, size: int) 
         tokens += [Token("W", word) for word in words[i : i + size]]  # "the meter", "the price list"
     elif kind == "RANK" and before == "W" and i + size < len(words) and lexicon().concept(words[i + size]) is not None:
         tokens.append(Token("W", raw))  # "the taxi rank sign"
+    elif raw == "outside" and (i + size == len(words) or words[i + size] in _NO_OBJECTS):
+        tokens.append(Token("W", raw))  # "is anyone outside?", "the outside lane"
     elif raw in _PARTICLES and i + size == len(words):
         if not tokens or tokens[0].type not in {"WHAT", "WHICH", "WHERE"}:
             tokens.append(Token("W", raw))
@@ -185,6 +189,30 @@ def _without_frame_phrases(words: list[str]) -> list[str]:
         result.append(words[i])
         i += 1
     return result
+
+
+def _without_there(words: list[str]) -> list[str]:
+    """Drop "there" and "up there" where they mean the picture: "are the people there wearing helmets?".
+
+    It is kept after a form of "be" ("is there a van?", "who is there?"), and where it is the predicate ("is anyone there?").
+    """
+    kept: list[str] = []
+    last = len([word for word in words if word != "?"]) - 1
+    for i, word in enumerate(words):
+        is_existential = i == 0 or words[i - 1] in _BE or (i < last and words[i + 1] in _BE)
+        is_predicate = i == last and words[0] in _BE and "there" not in kept
+        if word != "there" or is_existential or is_predicate:
+            kept.append(word)
+            continue
+        while len(kept) > 1 and kept[-1] in _BEFORE_THERE:
+            kept.pop()
+    return kept
+
+
+_BE = frozenset({"is", "are", "was", "were", "be", "isn't", "aren't", "not", "and", "if", "whether", "that", ","})
+"""Words after which "there" says that something exists."""
+
+_BEFORE_THERE = frozenset({"up", "down", "over", "out", "in", "from", "along", "back"})
 
 
 def _ends_with_place(words: list[str], index: int) -> bool:

@@ -79,6 +79,8 @@ def answer_attribute(view: View, question: tree.Ask) -> TruthAnswer:
         verb = is_or_are(2 if is_plural(question.what) else 1)
         is_predicate = attribute.endswith("ing") or attribute == "for"
         missing = f"what {subject} {verb} {attribute}" if is_predicate else f"the {attribute} of {subject}"
+        if question.attribute == ("sells",):
+            missing = f"what {subject} {'sell' if is_plural(question.what) else 'sells'}"
         return unknown_answer(f"I cannot tell {missing}")
     prefix = next((v for words, v in _VALUE_PREFIXES.items() if set(words.split()) & set(question.attribute)), "")
     if prefix == "facing " and all("direction" in t.attributes for t, _ in stated):
@@ -91,6 +93,9 @@ def answer_attribute(view: View, question: tree.Ask) -> TruthAnswer:
     if len(distinct) == 1 and len(stated) < len(matches):
         kind = noun_phrase(view, question.what, plural=True)
         return known_answer(f"{len(stated)} of the {len(matches)} {kind} {is_or_are(len(stated))} {prefix}{stated[0][1]}")
+    is_named = set(stated[0][1].split()) <= set(question.what.phrases[0].words)
+    if len(distinct) == 1 and question.attribute[-1] in COLOUR_KEYS and is_named:
+        return _where_named_by_colour(view, question.what, matches)
     if len(distinct) == 1:
         subject = definite_phrase(view, question.what, plural=len(stated) > 1)
         return known_answer(f"{subject} {is_or_are(len(stated))} {prefix}{stated[0][1]}")
@@ -105,6 +110,13 @@ def answer_attribute(view: View, question: tree.Ask) -> TruthAnswer:
     others = total - len(stated)
     rest = f"; I cannot tell for the other {'one' if others == 1 else others}" if others else ""
     return known_answer(f"of the {total} {kind}, {shares}{rest}")
+
+
+def _where_named_by_colour(view: View, what: tree.Description, matches: Sequence[Thing]) -> TruthAnswer:
+    """Say how many things there are and where, for "what colour is the red car?", which states its own answer."""
+    kind = noun_phrase(view, what, plural=len(matches) > 1)
+    places = english.listing(list(dict.fromkeys(position_words(thing) for thing in matches)))
+    return known_answer(f"there {is_or_are(len(matches))} {len(matches)} {kind} in view, {places}")
 
 
 def _goods_sentence(view: View, what: tree.Description, goods: Counter[str]) -> TruthAnswer:

@@ -17,11 +17,13 @@ class Command:
         text: The full instruction that the turn stands for, such as "pan left a bit" for "a bit more".
         steps: The steps of that instruction, with names as the user wrote them.
         effect: What came of it.
+        repeats: Whether the turn only repeated the command before it ("again").
     """
 
     text: str
     steps: tuple[Step, ...]
     effect: Effect
+    repeats: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from itertools import takewhile
 from typing import TYPE_CHECKING
 
 from scope_ptz.planner.grammar import instruction_tree as ast
@@ -13,13 +14,21 @@ from scope_ptz.planner.grammar.binding.corrections import (
     corrected_text,
     duration_in_answer,
     rejects_for_other_way,
+    repeats_amount,
     size_in_answer,
     thing_after_failure,
     thing_beside_rejected,
     turns_the_other_way,
 )
 from scope_ptz.planner.grammar.binding.focus import foci_of
-from scope_ptz.planner.grammar.binding.further_moves import measured_by_last, more, same_axis_again, share_of_zoom
+from scope_ptz.planner.grammar.binding.further_moves import (
+    measured_by_last,
+    more,
+    next_thing,
+    same_axis_again,
+    share_of_turn,
+    share_of_zoom,
+)
 from scope_ptz.planner.grammar.binding.overshoots import move_after_overshoot
 from scope_ptz.planner.grammar.binding.repeated_returns import continued_return
 from scope_ptz.planner.grammar.binding.single_moves import SingleMove, single_move, towards
@@ -48,9 +57,13 @@ _CORRECTION = re.compile(r"(?:no|nope|sorry|wait|oops|i meant|i mean|i said|make
 _ASKED = re.compile(r"By (?:how many degrees|what factor) shall I (?:pan|tilt|zoom) (left|right|up|down|in|out)\?")
 """The question about "the other way", which the next turn may answer with an amount."""
 
+_ASKED_SHARE = re.compile(r"Shall I (?P<move>(?:pan|tilt) \w+ [\d.]+ degrees) instead, or [\d.]+ degrees more\?")
+"""The question about "half of that", which the next turn may answer with "instead" or "more"."""
+
 _NO_LEAD = "(FILLER|oh|COMMA|DASH|STOP)* (no|nope|nah|oops|wait|sorry) (FILLER|no|wait|sorry|COMMA|DASH|STOP)*"
 """Words before a command that reject the last one."""
 
+_INSTEAD_OR_MORE = "(FILLER|COMMA)* (NUM DEG?)? (INSTEAD|more|MORE|further) (FILLER|COMMA|STOP)*"
 _ZOOM_BACK = "(ZOOM|go|come|FILLER)* (back_out|back_in) (FILLER|AGAINWORD|STOP)*"
 _ANY_WAY = "Which way do you mean: left, right, up, down, in or out?"
 
@@ -75,7 +88,8 @@ def commands_of(conversation: Sequence[PastTurn], presets: tuple[str, ...]) -> l
         steps = parse(said.text, presets).steps or ()
         effect = _effect(turn, steps, commands, corrects=said.corrects)
         repeated = standing_command(commands) if steps and all(isinstance(step, ast.DoAgain) for step in steps) else None
-        commands.append(Command(said.text, steps, effect) if repeated is None else Command(repeated.text, repeated.steps, effect))
+        text, steps = (said.text, steps) if repeated is None else (repeated.text, repeated.steps)
+        commands.append(Command(text, steps, effect, repeats=repeated is not None))
     return commands
 
 
@@ -121,11 +135,15 @@ def _continuation(
     last = standing_command(commands)
     if (answered := _answer_about_other_way(lexemes, conversation[-1], last)) is not None:
         return Continuation(answered)
+    if (share := _ASKED_SHARE.fullmatch(conversation[-1].reply)) is not None and full_match(_INSTEAD_OR_MORE, lexemes):
+        return Continuation(share["move"], corrects=any(x.has("INSTEAD") for x in lexemes))
     if (neighbour := _neighbour(said, conversation, presets)) is not None:
         return Continuation(f"go to preset {neighbour}")
     if (meant := _about_same_command(lexemes, said, commands, conversation)) is not None:
         return meant
     if (wrong := correctable_command(commands)) is not None:
+        if wrong.repeats and wrong is commands[-1] and repeats_amount(lexemes, wrong):
+            return Continuation(_return_before_repetitions(commands))
         was_rejected = commands[-1].effect == "rejected"
         if (text := corrected_text(lexemes, said, wrong, was_rejected=was_rejected)) is not None:
             return Continuation(text, corrects=True)
@@ -136,7 +154,9 @@ def _continuation(
     move = single_move(last.steps)
     if move is not None and turns_the_other_way(lexemes):
         return _other_way(said, lexemes, move)
-    if (changed := _changed_instruction(said, last)) is not None:
+    if (question := share_of_turn(lexemes, move)) is not None:
+        return Continuation(said, question=question)
+    if (changed := next_thing(lexemes, said, last) or _changed_instruction(said, last)) is not None:
         return Continuation(changed)
     if (text := _corrected_within(said, last, presets)) is not None:
         return Continuation(text, corrects=True)
@@ -153,6 +173,12 @@ def _return_after_no(lexemes: Sequence[Lexeme], said: str, presets: tuple[str, .
     wanted = said[lexemes[lead.size].start :]
     steps = parse(wanted, presets).steps or ()
     return wanted if steps and all(_returns(step, is_trip_back=False) for step in steps) else None
+
+
+def _return_before_repetitions(commands: Sequence[Command]) -> str:
+    """Return the instruction that takes back the repetitions of a move: "no, 2x" after "zoom in 2x", "again" means 2x in all."""
+    repetitions = len(list(takewhile(lambda command: command.repeats, reversed(commands))))
+    return "undo" if repetitions == 1 else f"go back {repetitions} times"
 
 
 def _about_same_command(

@@ -24,7 +24,8 @@ _CLAIM = (
     rf"(FILLER|no|nope|{_PAUSE})* (?P<retraction>i_said|SELF (said|TELL-ED)|(it|that) should (be|have been)|"
     rf"should (be|have been)) {_PAUSE}*"
 )
-_CORRECTING = rf"({_CLAIM}|{EDITING})"
+_NOT_THAT = rf"(FILLER|no|nope|{_PAUSE})* not (that|this|it|him|her|them|those|these) (one|ones)? {_PAUSE}+ (FILLER)*"
+_CORRECTING = rf"({_NOT_THAT}|{_CLAIM}|{EDITING})"
 _OTHER = "(in|DET)* (other|opposite) (way|direction|SIDE)|the_opposite_direction|the_other_direction|the_other_way|the_opposite_way"
 _WRONG_WAY = (
     rf"(FILLER|no|nope|that|it|this|is|'s|was|DET|{_PAUSE})* (wrong_way|the_wrong_way|wrong (way|direction)) (FILLER|{_PAUSE})*"
@@ -33,6 +34,7 @@ _NO_OTHER_WAY = rf"(FILLER|oops|wait|{_PAUSE})* (no|nope|nah) (FILLER|wait|{_PAU
 _OTHER_WAY = rf"(FILLER|AND|THEN|SAMEAMOUNT|{_PAUSE})* ({_OTHER}) (FILLER|AROUND|{_PAUSE})*"
 _NEW_SIZE = "(DET|go|just|only|but|FILLER)* ((?P<little>LITTLE)|(?P<lot>LOT)|(?P<limit>LIMIT)) (FILLER)*"
 _SIZE_IN_ANSWER = (
+    r"((oh|oops|sorry|FILLER) (COMMA|DASH|STOP)*)* "
     r"(by|DET|AMOUNTISH|FILLER)* ((?P<number>NUM) (DEG|X|PERCENT)?|(?P<same>(SAMEAMOUNT|same (amount|angle)?|as_before) "
     r"(as before|as last_time|amount|as (much|far))?)|(?P<little>LITTLE)|(?P<lot>LOT)|(?P<limit>LIMIT)) (FILLER|AGAINWORD|STOP)*"
 )
@@ -58,8 +60,10 @@ def corrected_text(lexemes: Sequence[Lexeme], text: str, last: Command, *, was_r
         was_rejected: Whether the user has rejected the command, and now says what to do instead, without "no" or "I meant".
     """
     move = single_move(last.steps)
-    if rejects_for_other_way(lexemes):
+    if rejects_for_other_way(lexemes) or (turns_the_other_way(lexemes) and not asks_for_another_move(lexemes)):
         return move.reversed().text if move is not None else None
+    if move is not None and (instead := _move_instead(lexemes, text, move)) is not None:
+        return instead.text
     editing = match_start(_CORRECTING, lexemes)
     size = editing.size if editing is not None else 0
     if size == 0 and not was_rejected:
@@ -143,6 +147,15 @@ def rejects_for_other_way(lexemes: Sequence[Lexeme]) -> bool:
     return bool(full_match(_WRONG_WAY, lexemes) or full_match(_NO_OTHER_WAY, lexemes))
 
 
+def repeats_amount(lexemes: Sequence[Lexeme], last: Command) -> bool:
+    """Return whether a text corrects the last move to the amount that it had: "no, 2x" after "zoom in 2x"."""
+    move, editing = single_move(last.steps), match_start(_CORRECTING, lexemes)
+    rest = _without_edges(lexemes[editing.size :]) if editing is not None else ()
+    if not rest or move is None or any(x.has("NOT", "OR", *_VERBS) for x in rest):
+        return False
+    return _changed_move(move, rest) == move
+
+
 def turns_the_other_way(lexemes: Sequence[Lexeme]) -> bool:
     """Return whether a text only asks for the other direction: "the other way", "and now the other way"."""
     return full_match(_OTHER_WAY, lexemes) is not None
@@ -167,6 +180,17 @@ def size_in_answer(lexemes: Sequence[Lexeme], asked: SingleMove, last: SingleMov
     if match.has("same"):
         return SingleMove(asked.axis, asked.way, last.size) if last is not None and last.axis == asked.axis else None
     return _sized(asked, match, lexemes)
+
+
+def _move_instead(lexemes: Sequence[Lexeme], text: str, move: SingleMove) -> SingleMove | None:
+    """Return the move of "tilt down instead", with the amount of the corrected move if it states none; None for other texts."""
+    rest = _without_edges(lexemes)
+    if not rest or not any(x.has("INSTEAD") for x in lexemes) or any(x.has("NOT", "OR") for x in rest):
+        return None
+    wanted = single_move(parse(text[rest[0].start : rest[-1].end]).steps or ())
+    if wanted is None or wanted.axis != move.axis or any(x.has("NUM", "LITTLE", "LOT", "LIMIT", "FRACTION") for x in rest):
+        return wanted
+    return SingleMove(wanted.axis, wanted.way, move.size)
 
 
 def _changed_move(move: SingleMove, rest: Sequence[Lexeme]) -> SingleMove | None:

@@ -18,11 +18,14 @@ from scope_ptz.planner.grammar.parsing.parts.clause import Source, text_of, trim
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, search
 
 _LEAD = "(FILLER|COMMA|AND|BUT|NOW|LEADFILLER|FIRSTLY|now|ok|okay|then|so|also|what_about|how_about)*"
-_REJECTING = "(FILLER|COMMA)* (no|nope|nah) ((COMMA|DASH)+|(?=the))"
+_REJECTING = "(FILLER|COMMA)* (no|nope|nah|sorry|oops) ((COMMA|DASH)+|(?=the))"
 """The beginning of a follow-up that corrects the turn before: "no, the woman on the left"."""
 
 _LEAD_ABOUT = "(FILLER|COMMA|AND|BUT|now|so|ok|okay|then)* (what_about|how_about)"
 _SIDE = "left|right|middle|centre|center|top|bottom"
+_APOLOGIES = frozenset({"sorry", "oops", "my_mistake"})
+"""Courtesy before a follow-up that corrects the turn before: "sorry, the right half"."""
+
 _END = "(FILLER|COMMA|QUESTION|STOP|NOW|then|VISIBLE)*"
 _SHOW = "((ZOOM IN|ZOOM_IN) (on|onto|to)|show (me|us)?|SHOW (me|us)?|look at|LOOK_AT)"
 _DETERMINER = "(DET|EVERY)"
@@ -73,7 +76,8 @@ def _followup(source: Source, lexemes: Sequence[Lexeme]) -> ast.Step | None:
     match = full_match(f"(?P<lead>({_REJECTING})? {_LEAD}) (?P<what>_+?) {_END}", lexemes)
     if match is None or any(x.has("COMMA") for x in match["what"]):
         return None
-    what, is_led = match["what"], match.has("lead") and any(not x.has("FILLER", "COMMA") for x in match["lead"])
+    lead = match["lead"] if match.has("lead") else ()
+    what, is_led = match["what"], any(x.word in _APOLOGIES or not x.has("FILLER", "COMMA") for x in lead)
     if full_match("(all|both|each)? (of)? PRON (all|both)?|(both|all|each)", what):
         pronoun = next((x.word for x in what if x.has("PRON")), "them")
         return ast.WhatAbout(ast.Thing(pronoun=pronoun if is_led else "both")) if is_led or len(what) > 1 else None

@@ -10,6 +10,7 @@ from scope_ptz.planner.grammar.binding.commands import Command
 from scope_ptz.planner.grammar.binding.single_moves import SingleMove, single_move, towards
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 from scope_ptz.planner.grammar.parsing.instruction_parser import parse
+from scope_ptz.planner.grammar.parsing.parts.noun_phrases import is_noun_phrase
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start
 
 _NUMBER = r"(?P<number>\d+(?:\.\d+)?)(?: degrees?| deg|°)?"
@@ -24,6 +25,7 @@ _SAME = re.compile(r"(?:and |now |ok |okay |yes |please )*(?:more|further|keep g
 _NO_PAUSE = "(FILLER|oh|COMMA|DASH|STOP)* (no|nope|nah) (FILLER|COMMA|DASH|STOP)* (COMMA|DASH|STOP) (FILLER)*"
 """Words before "more" that reject the last amount. Without a pause, "no more" asks for the opposite."""
 
+_NEXT_THING = "(FILLER|COMMA)* (now|NOW|AND|and|THEN|then) (FILLER|COMMA|now|then)* (on|onto) (?P<thing>DET _+?) (FILLER|STOP)*"
 _SHARE = "(FILLER|AND|THEN)* ((?P<fraction>FRACTION)|(?P<twice>TWICE)) (of)? (that|it) (FILLER|AGAINWORD)*"
 
 
@@ -45,6 +47,25 @@ def more(lexemes: Sequence[Lexeme], said: str, last: Command) -> str | None:
     if number:
         return f"{move.axis} {move.way} {number} degrees"
     return f"{move.axis} {move.way} {'a lot' if match['lot'] else 'a bit'}"
+
+
+def next_thing(lexemes: Sequence[Lexeme], said: str, last: Command) -> str | None:
+    """Return the close-up of "now on the fountain" after a close-up; None for other instructions."""
+    match = full_match(_NEXT_THING, lexemes)
+    step = last.steps[0] if len(last.steps) == 1 else None
+    if match is None or not isinstance(step, ast.ZoomTo) or not is_noun_phrase(match["thing"]):
+        return None
+    return f"zoom in on {said[match['thing'][0].start : match['thing'][-1].end]}"
+
+
+def share_of_turn(lexemes: Sequence[Lexeme], move: SingleMove | None) -> str | None:
+    """Return the question about "half of that" after a turn: whether it is meant instead, or in addition; None for others."""
+    match = full_match(_SHARE, lexemes)
+    if match is None or move is None or not move.size.endswith(" degrees"):
+        return None
+    factor = match["fraction"][0].value if match.has("fraction") else 2.0
+    angle_deg = float(move.size.removesuffix(" degrees")) * factor
+    return f"Shall I {move.axis} {move.way} {angle_deg:g} degrees instead, or {angle_deg:g} degrees more?"
 
 
 def measured_by_last(said: str, last: Command, presets: tuple[str, ...]) -> str | None:

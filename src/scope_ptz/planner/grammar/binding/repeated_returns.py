@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
 _EDGE = "(FILLER|AND|THEN|now|no|COMMA|STOP|DASH)*"
 _AGAIN = f"{_EDGE} AGAINWORD {_EDGE}"
+_BACK_AGAIN = f"{_EDGE} (go_back|take_me_back|(go|come|CARRY|TURN|take) (me|us|it|CAMERA)? BACK) AGAINWORD {_EDGE}"
 _REDO = f"{_EDGE} (redo|redo_that|redo_it|redo (DET|last|move|it|that|command)+|UNDO (DET)? UNDO) {_EDGE}"
 _RETURN_TRIP = "and back again"
 _NOTHING_TO_REDO = "Nothing was taken back just before, so I have nothing to redo. What shall I do?"
@@ -25,8 +26,8 @@ def continued_return(
 ) -> Continuation | None:
     """Return what "again" or "redo" stands for after the camera was put back; None for other instructions.
 
-    "Again" takes back one command more, if there is one. "Redo" puts back what was taken back; when nothing was, it repeats the
-    last command.
+    "Again" and "go back again" take back one command more, if there is one. "Redo" puts back what was taken back; when nothing was,
+    it repeats the last command.
 
     Args:
         lexemes: The lexemes of the instruction.
@@ -40,7 +41,11 @@ def continued_return(
         if is_back:
             return Continuation(_RETURN_TRIP)
         return Continuation("again") if standing_command(commands) else Continuation(said, question=_NOTHING_TO_REDO)
-    if last is None or not is_back or not full_match(_AGAIN, lexemes):
+    if last is None or not is_back:
+        return None
+    if full_match(_BACK_AGAIN, lexemes):
+        return Continuation("go back")
+    if not full_match(_AGAIN, lexemes):
         return None
     has_earlier = bool(position_history(conversation, [command.effect for command in commands], None).earlier)
     return Continuation(last.text) if has_earlier else None

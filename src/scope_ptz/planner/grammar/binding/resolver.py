@@ -52,9 +52,10 @@ from scope_ptz.planner.grammar.binding.question_text import (
 )
 from scope_ptz.planner.grammar.binding.unknowable import why_not_about_the_scene
 from scope_ptz.planner.grammar.binding.whereabouts import report_of_last_following, thing_that_went
-from scope_ptz.planner.grammar.binding.zoom_factors import FILLS_THE_VIEW
 from scope_ptz.planner.grammar.execution.answer_sentences import noun
 from scope_ptz.planner.grammar.execution.comparison_sentences import presets_of_rank
+from scope_ptz.planner.grammar.parsing.looks.closeups import FILLS_THE_VIEW
+from scope_ptz.planner.grammar.parsing.loops import FOLLOWS_FOR_A_TIME
 
 _THE_THING_AND_IT = re.compile(r"\bthe \w+.*\b(it|they|them)\b")
 _RELATIVE_POSITION = re.compile(
@@ -401,7 +402,7 @@ class Resolver(FollowUpSteps):
 
     def _loop(self, step: ast.Loop) -> Sequence[ast.Step]:
         if any(isinstance(inner, ast.Track) for inner in step.body):
-            raise UnresolvedError("I follow things for a time that you give me. For how many seconds shall I follow it?")
+            raise UnresolvedError(FOLLOWS_FOR_A_TIME)
         for inner in step.body:
             named = (
                 inner.things[0] if isinstance(inner, ast.Count) else inner.thing if isinstance(inner, ast.ZoomTo) else ast.Thing()

@@ -47,6 +47,9 @@ _REJECTING = (
 )
 """Words with which somebody rejects what was taken and does not say what is meant: "that is the wrong one"."""
 
+_RADIO_CHECK = "(FILLER|COMMA|DASH|CAMERA)* (radio|comms|mic|sound) check (over|FILLER|COMMA|STOP|QUESTION)*"
+
+_RECEIVING = "Receiving you. Tell me where to look, or ask what is in view."
 _WELCOME = "You're welcome."
 _THANK_YOU = "Thank you. Tell me when you want to see something else."
 _WELL = 'I am well, thank you. Tell me where to look, or ask what is in view, for example: "how many people are there?".'
@@ -72,6 +75,8 @@ def reply_to_small_talk(instruction: str) -> str:
     lexemes = lexemes_of(instruction)
     if full_match(_HALT, lexemes):
         return _NOT_MOVING
+    if full_match(_RADIO_CHECK, lexemes):
+        return _RECEIVING
     sentences = _split(lexemes)
     if len(sentences) > 1 and full_match(_NO_THANKS, sentences[0]):  # "no thanks, that's all"
         sentences = [*sentences[1:], [x for x in sentences[0] if x.has("FILLER")]]
@@ -79,7 +84,7 @@ def reply_to_small_talk(instruction: str) -> str:
         return ""
     words = {x.word for x in lexemes}
     if any(_has_thanks(sentence) for sentence in sentences):
-        return _WELCOME
+        return _GOODBYE if words & _FAREWELLS else _WELCOME
     if any(full_match(_CLOSING, sentence) for sentence in sentences):
         return _ALL_RIGHT
     if any(full_match(_WELLBEING, sentence) for sentence in sentences):
@@ -140,6 +145,28 @@ def dismisses(instruction: str) -> bool:
 def asks_to_repeat_reply(instruction: str) -> bool:
     """Return whether a text asks for the last reply once more: "say again", "come again?", "what did you say?"."""
     return full_match(_SAY_AGAIN, lexemes_of(instruction)) is not None
+
+
+_ASKED_BEFORE = (
+    "(FILLER|COMMA)* what DOV SELF (just|FILLER)* (ask|TELL|want|request) (you|me|for|to do)* "
+    "(?P<first>first|FIRSTLY|at first|first of all)? "
+    "(last|before|earlier|just|now|NOW|BEFORE|FILLER|STOP|QUESTION)*"
+)
+
+
+def recalled_message(instruction: str, earlier: Sequence[str]) -> str:
+    """Return the user's first or last message for "what did I ask first?"; empty for other texts.
+
+    Args:
+        instruction: The user's text.
+        earlier: The user's earlier messages, oldest first.
+    """
+    lexemes = lexemes_of(instruction)
+    match = full_match(_ASKED_BEFORE, lexemes)
+    if match is None or not earlier or not any(x.word in {"i", "we"} for x in lexemes):
+        return ""
+    is_first = match.has("first")
+    return f'Your {"first" if is_first else "last"} message was "{earlier[0 if is_first else -1].strip()}".'
 
 
 _SWITCHING = "(switch|turn|put|flick|flip) (DET|FREE)* (on|off) (DET|FREE)*"

@@ -21,6 +21,7 @@ from scope_ptz.planner.grammar.binding.small_talk import (
     asks_to_repeat_reply,
     dismisses,
     question_about_rejection,
+    recalled_message,
     reply_to_small_talk,
 )
 from scope_ptz.planner.grammar.binding.unknowable import why_unknowable
@@ -86,6 +87,8 @@ def understand(instruction: str, presets: Sequence[str] | None, conversation: Se
         return Understanding((ast.Reply(conversation[-1].reply),))
     while conversation and asks_to_repeat_reply(conversation[-1].instruction):
         conversation = conversation[:-1]  # a question that was repeated can still be answered
+    if recalled := recalled_message(instruction, [turn.instruction for turn in conversation]):
+        return Understanding((ast.Reply(recalled),))
     if reason := why_unknowable(instruction):
         return Understanding(clarification=reason)
     preset_names = None if presets is None else tuple(presets)

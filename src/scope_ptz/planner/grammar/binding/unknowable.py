@@ -25,6 +25,9 @@ _NAMING = (
 _COMING = (
     r"how long (till|until|til|UNTIL|to|before|BEFORE) _+"
     r"|(when|WHEN) (DOV|BE|MODAL|will|is|do) (DET)? (next|THEN|first|last) _+"
+    r"|(when|WHEN) (MODAL|will|'ll) _+"
+    r"|(when|WHEN) (BE|'s) _+? (finished|done|complete|completed|ready|over|going to _+)"
+    r"|how long (MODAL|will|'ll) _+"
 )
 
 _OF_CLOCKS = frozenset({"time", "day", "date", "year"})

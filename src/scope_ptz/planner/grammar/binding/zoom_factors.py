@@ -9,14 +9,12 @@ from scope_ptz.planner.grammar import instruction_tree as ast
 from scope_ptz.planner.grammar.binding.commands import Command, Continuation
 from scope_ptz.planner.grammar.binding.single_moves import SingleMove, single_move
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
+from scope_ptz.planner.grammar.parsing.looks.closeups import FILLS_THE_VIEW
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match
 from scope_ptz.planner.grammar.parsing.rewording.repairs import EDITING
 
 if TYPE_CHECKING:
     from scope_ptz.planner.base import PastTurn
-
-FILLS_THE_VIEW = "A thing I zoom in on fills the view. Shall I do that, or zoom where I look now?"
-"""The question about a percentage for a zoom on a thing."""
 
 _FACTOR = (
     rf"(?P<editing>{EDITING})? (it|by|to|just|only|FILLER)* (?P<number>NUM) ((?P<factor>X)|PERCENT) "

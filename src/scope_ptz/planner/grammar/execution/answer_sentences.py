@@ -10,8 +10,9 @@ from scope_ptz.builtin_names import GROUND_TRUTH
 from scope_ptz.english.grammar.common_nouns import is_common_noun
 from scope_ptz.english.grammar.lexicon import lexicon
 from scope_ptz.english.grammar.numbers import NUMBER_WORDS
-from scope_ptz.english.nouns import plural_noun
+from scope_ptz.english.nouns import UNCOUNTABLE, plural_noun
 from scope_ptz.planner.grammar.answerable import answerable_questions
+from scope_ptz.planner.grammar.execution.visible_counts import is_complete
 from scope_ptz.planner.grammar.instruction_tree import (
     Condition,
     Joined,
@@ -31,14 +32,6 @@ _MODIFIER_START = re.compile(
     r"facing|driving|walking|visible|along|across|around|opposite|beyond|through|among|towards|alongside|beneath|underneath|saying|over|below|against|without|not)\b"
 )
 _OPERATORS = {">=": "at least ", "<=": "at most ", ">": "more than ", "<": "fewer than ", "==": "exactly "}
-
-
-_UNCOUNTABLE = frozenset({
-    "smoke", "steam", "water", "litter", "rubbish", "trash", "garbage", "graffiti", "snow", "ice", "debris", "traffic",
-    "damage", "dust", "fog", "mist", "mud", "oil", "foam", "sand", "gravel", "hay", "straw", "grass", "luggage", "equipment",
-    "machinery", "furniture", "scaffolding", "fencing", "movement", "activity", "vandalism", "flooding", "cargo", "freight",
-    "timber", "livestock", "wildlife",
-})  # fmt: skip
 
 
 def number(value: float) -> str:
@@ -120,7 +113,7 @@ def noun(description: str, count: float) -> str:
 
 def is_uncountable(description: str) -> bool:
     """Return whether a description names something uncountable, such as "smoke" or "standing water"."""
-    return head_and_rest(description)[0].split(" ")[-1].lower() in _UNCOUNTABLE
+    return head_and_rest(description)[0].split(" ")[-1].lower() in UNCOUNTABLE
 
 
 def _inflected(word: str, inflect: Callable[[str], str]) -> str:
@@ -136,8 +129,9 @@ def counted(description: str, count: int, *, complete: bool = True) -> str:
     """Return a count with its noun: "3 cones", "no cones", or "at least 3 cones" when there may be more."""
     if count and is_uncountable(description):
         return f"some {description}"
-    number = ("no" if count == 0 else str(count)) if complete else f"at least {count}"
-    return f"{number} {noun(description, count)}"
+    if not (complete and is_complete(count)):
+        return f"at least {count} {noun(description, count)}" if count else f"no {noun(description, 0)} clearly"
+    return f"{count or 'no'} {noun(description, count)}"
 
 
 def not_made_out(description: str, place: str) -> str:

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from scope_ptz import english
 from scope_ptz.planner.grammar import instruction_tree as ast
 from scope_ptz.planner.grammar.execution import answer_sentences as phrases
+from scope_ptz.planner.grammar.execution.visible_counts import are_complete, number_text
 
 
 def counts_text(parts: Sequence[ast.Tally], counts: Sequence[int]) -> str:
@@ -16,7 +17,7 @@ def counts_text(parts: Sequence[ast.Tally], counts: Sequence[int]) -> str:
     if same and len(places) == len(set(places)) == len(parts) and list(counts).count(0) > _MAX_LISTED_ZEROS:
         return counts_at_presets(parts[0].thing.text, dict(zip(places, counts, strict=True)))
     listed = [
-        (str(count) if count else "none") + _at(part)
+        number_text(count) + _at(part)
         if same and i
         else phrases.counted(part.thing.text, count) + (_at(part) or (" here" if places else ""))
         for i, (part, count) in enumerate(zip(parts, counts, strict=True))
@@ -32,10 +33,16 @@ def _at(part: ast.Tally) -> str:
 def counts_and_difference_text(parts: Sequence[ast.Tally], counts: Sequence[int]) -> str:
     """Return two counts at presets with their difference: "I can see 3 cars at gate and 1 at yard, so there are 2 more at gate"."""
     difference = counts[0] - counts[1]
+    if not are_complete(counts):
+        return f"{counts_text(parts, counts)}. {_unknown_difference(parts[0].thing.text)}"
     if not difference or parts[0].place is None:
         return f"{counts_text(parts, counts)}. That is the same number at both, so the difference is 0"
     verb, comparison = ("is" if abs(difference) == 1 else "are"), ("more" if difference > 0 else "fewer")
     return f"{counts_text(parts, counts)}, so there {verb} {abs(difference)} {comparison} at {parts[0].place.name}"
+
+
+def _unknown_difference(text: str) -> str:
+    return f"I cannot tell the exact difference, because there may be more {phrases.noun(text, 2)} that are too small or hidden"
 
 
 def is_one_kind_at_two_presets(first: ast.Tally, second: ast.Tally) -> bool:
@@ -43,8 +50,11 @@ def is_one_kind_at_two_presets(first: ast.Tally, second: ast.Tally) -> bool:
     return first.thing.text == second.thing.text and first.place is not None and second.place is not None
 
 
-def difference_text(first: ast.Tally, second: ast.Tally, difference: int) -> str:
+def difference_text(first: ast.Tally, second: ast.Tally, counts: tuple[int, int]) -> str:
     """Return the difference of two counts: "There are 5 more bicycles than planters"."""
+    if not are_complete(counts):
+        return _unknown_difference(first.thing.text)
+    difference = counts[0] - counts[1]
     if not difference:
         return "That is the same number of both, so the difference is 0"
     number = abs(difference)
@@ -68,6 +78,8 @@ _PLACES = ("in ", "on ", "at ", "near ", "next to ", "behind ", "under ", "above
 def ranking_text(parts: Sequence[ast.Tally], counts: Sequence[int], first: ast.Comparison) -> str:
     """Return several counts in their order: "From most to fewest: 5 bicycles, 3 benches and 2 planters"."""
     ranked = sorted(zip(parts, counts, strict=True), key=lambda pair: pair[1], reverse=first == "more")
+    if not are_complete(counts):
+        return f"{counts_text(parts, counts)}. I cannot tell their order for certain, because some may be too small or hidden"
     if len(set(counts)) == 1 and len(counts) > 1:
         return f"{counts_text(parts, counts)}. {_all_equal_text(len(counts))}"
     order = "from most to fewest" if first == "more" else "from fewest to most"
@@ -90,8 +102,12 @@ def winner_text(parts: Sequence[ast.Tally], counts: Sequence[int], first: ast.Co
     best = max(counts) if first == "more" else min(counts)
     winners = [phrases.noun(part.thing.text, 2) for part, count in zip(parts, counts, strict=True) if count == best]
     if len(winners) > 1:
-        return f"It is a tie between {english.listing(winners)}"
-    return f"There are {first} {winners[0]} than any of the others"
+        return f"It is a tie between {english.listing(winners)}" if are_complete(counts) else _CANNOT_TELL_WHICH
+    hedge = "" if are_complete(counts) else "as far as I can see, "
+    return f"{hedge}there are {first} {winners[0]} than any of the others"
+
+
+_CANNOT_TELL_WHICH = "I cannot tell which, because there may be more that are too small or hidden"
 
 
 def _name(part: ast.Tally) -> str:
@@ -102,11 +118,11 @@ def counts_at_presets(text: str, counts: Mapping[str, int]) -> str:
     """Return the counts at presets: "I can see 3 cars at gate and no cars at yard"."""
     shown = {name: count for name, count in counts.items() if count}
     zeros = len(counts) - len(shown)
-    if zeros <= _MAX_LISTED_ZEROS:
+    if zeros <= _MAX_LISTED_ZEROS or not are_complete(count for count in counts.values() if not count):
         return f"I can see {english.listing([f'{phrases.counted(text, count)} at {name}' for name, count in counts.items()])}"
     if not shown:
         return f"I can see {phrases.counted(text, 0)} at any of the {zeros} presets"
-    listed = [f"{phrases.counted(text, n) if not i else n} at {name}" for i, (name, n) in enumerate(shown.items())]
+    listed = [f"{phrases.counted(text, n) if not i else number_text(n)} at {name}" for i, (name, n) in enumerate(shown.items())]
     return f"I can see {english.listing(listed)}, and none at the other {zeros} presets"
 
 
@@ -140,7 +156,9 @@ def best_preset_text(step: ast.WhichPreset, counts: Mapping[str, int], ranked: S
     if not ranked:
         return f"There are only {len(counts)} presets to compare"
     if len(ranked) > 1:
-        return f"It is a tie between {english.listing(list(ranked))}{f', with {counts[ranked[0]]} each' if step.numbers else ''}"
+        is_tie = are_complete(counts[name] for name in ranked) and not set(ranked) & set(step.lower_bounds)
+        each = f", with {counts[ranked[0]]} each" if step.numbers else ""
+        return f"It is a tie between {english.listing(list(ranked))}{each}" if is_tie else _CANNOT_TELL_WHICH
     nth = "" if step.rank == 1 else f"{_ordinal(step.rank)} "
     if len(counts) == 2 and step.rank == 1:
         amount: str = step.comparison
@@ -150,7 +168,8 @@ def best_preset_text(step: ast.WhichPreset, counts: Mapping[str, int], ranked: S
         least = "at least " if ranked[0] in step.lower_bounds else ""
         had = f"preset {ranked[0]} had {amount} {phrases.noun(step.thing.text, 2)}, with {least}{counts[ranked[0]]}"
         return f"as far as I could see, {had}" if step.lower_bounds else had
-    return f"Preset {ranked[0]} shows {amount} {phrases.noun(step.thing.text, 2)}"
+    hedge = "" if are_complete(count for name, count in counts.items() if name != ranked[0]) else "as far as I can see, "
+    return f"{hedge}preset {ranked[0]} shows {amount} {phrases.noun(step.thing.text, 2)}"
 
 
 def _ordinal(rank: int) -> str:

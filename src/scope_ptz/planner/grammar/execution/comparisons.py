@@ -12,6 +12,7 @@ from scope_ptz.planner.grammar.execution import answer_sentences as phrases
 from scope_ptz.planner.grammar.execution import comparison_sentences as sentences
 from scope_ptz.planner.grammar.execution.condition_evaluation import ConditionEvaluation
 from scope_ptz.planner.grammar.execution.run_state import CallGenerator
+from scope_ptz.planner.grammar.execution.visible_counts import VisibleCount, are_complete, number_text
 
 if TYPE_CHECKING:
     from scope_ptz.tools.arguments import View
@@ -55,11 +56,9 @@ class ComparisonSteps(ConditionEvaluation):
             self._last_was_yes = result["count"] > 0 if result is not None else None
             if result is not None and not result["count"] and not result.get("complete", True):
                 unclear.setdefault(thing.text, []).append(place.name)
-            elif result is not None and not result.get("complete", True):
-                least = phrases.counted(thing.text, result["count"], complete=False)
-                self._note(f"I can see {least} at {place.name}")
             elif result is not None:
-                seen.append((ast.Tally(thing, place), int(result["count"])))
+                count = VisibleCount(int(result["count"]), complete=bool(result.get("complete", True)))
+                seen.append((ast.Tally(thing, place), count))
         if seen:
             self._note(sentences.counts_text([part for part, _ in seen], [count for _, count in seen]))
         for text, names in unclear.items():
@@ -80,7 +79,8 @@ class ComparisonSteps(ConditionEvaluation):
             counted = sentences.counts_text(step.parts, counts).replace("I can see", "I counted", 1)
             self._note(f"{counted}, which makes {sum(counts)} altogether")
             return
-        self._note(f"{sentences.counts_text(step.parts, counts)}, which makes {sum(counts)} altogether")
+        total = VisibleCount(sum(counts), complete=are_complete(counts))
+        self._note(f"{sentences.counts_text(step.parts, counts)}, which makes {number_text(total) if total else 0} altogether")
 
     def _difference(self, step: ast.Difference) -> CallGenerator:
         parts = (step.first, step.second)
@@ -90,7 +90,7 @@ class ComparisonSteps(ConditionEvaluation):
             self._note(sentences.counts_and_difference_text(parts, (first, second)))
             return
         self._note(sentences.counts_text(parts, (first, second)))
-        self._note(sentences.difference_text(step.first, step.second, first - second))
+        self._note(sentences.difference_text(step.first, step.second, (first, second)))
 
     def _rankcounts(self, step: ast.RankCounts) -> CallGenerator:
         counts = yield from self._tallies(step.parts)
@@ -112,7 +112,8 @@ class ComparisonSteps(ConditionEvaluation):
             return
         self._note(seen)
         greater, lesser = parts if first >= second else reversed(parts)
-        self._note(sentences.difference_text(greater, lesser, abs(first - second)))
+        numbers = (first, second) if first >= second else (second, first)
+        self._note(sentences.difference_text(greater, lesser, numbers))
 
     def _beforeafter(self, step: ast.BeforeAfter) -> CallGenerator:
         text = step.thing.text

@@ -8,6 +8,7 @@ from scope_ptz.planner.grammar import instruction_tree as ast
 from scope_ptz.planner.grammar.execution import answer_sentences as phrases
 from scope_ptz.planner.grammar.execution.closer_look import CloserLook, reading_question
 from scope_ptz.planner.grammar.execution.run_state import CallGenerator, HaltedError
+from scope_ptz.planner.grammar.execution.visible_counts import VisibleCount
 
 if TYPE_CHECKING:
     from scope_ptz.tools.arguments import View
@@ -79,4 +80,4 @@ class ConditionEvaluation(CloserLook):
 
     def _visible_count(self, description: str, view: View | None) -> CallGenerator:
         result = yield from self._required_perception_call("count_objects", description=description, view=view or "current")
-        return int(result["count"])
+        return VisibleCount(int(result["count"]), complete=bool(result.get("complete", True)))

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from scope_ptz import english
+from scope_ptz.geometry import Pose, wrap_pan_deg
 from scope_ptz.planner.grammar.execution.answer_sentences import count_word, number
 
 
@@ -130,3 +131,16 @@ def shortfall_text(result: Mapping[str, Any]) -> str:
 def limits_text(axes: Sequence[str]) -> str:
     """Return the limits of the axes with their verb: "zoom limit allows", "pan and tilt limits allow"."""
     return f"{english.listing(list(axes))} {'limit allows' if len(axes) == 1 else 'limits allow'}"
+
+
+def offset_text(reference: Pose, pose: Pose) -> str:
+    """Return where a pose looks, seen from another one, as words before its name: "20 degrees to the left of", "closer at"."""
+    pan_deg, tilt_deg = round(wrap_pan_deg(pose.pan_deg - reference.pan_deg)), round(pose.tilt_deg - reference.tilt_deg)
+    ways = [
+        f"{degrees(angle_deg)} {after if angle_deg > 0 else before}"
+        for angle_deg, before, after in ((pan_deg, "to the left of", "to the right of"), (tilt_deg, "below", "above"))
+        if angle_deg
+    ]
+    if ways:
+        return " and ".join(ways)
+    return "closer at" if pose.zoom > reference.zoom else "wider at"

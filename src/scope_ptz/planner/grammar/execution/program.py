@@ -187,9 +187,15 @@ class Program(CloseUpSteps, ReturnSteps, ComparisonSteps):
 
     def _camerastate(self, step: ast.CameraState) -> CallGenerator:
         yield from ()
-        place = self._visited[-1]
-        preset = f"preset {place.preset}: " if place.preset and place.pose == self.pose else ""
-        self._note(f"The camera is at {preset}{phrases.pose_text(self.pose.as_dict())}")
+        here, pose = self._here(), phrases.pose_text(self.pose.as_dict())
+        place = next((place for place in reversed(self._visited) if place.preset and place.viewpoint == self.viewpoint), None)
+        if place is None:
+            self._note(f"The camera is at {pose}")
+        elif place.is_at(here) or place.pose == self.pose:
+            self._note(f"The camera is at preset {place.preset}: {pose}")
+        else:
+            way = motion.offset_text(place.pose, self.pose)
+            self._note(f"I am looking {way} preset {place.preset}: the camera is at {pose}")
 
     def _help(self, step: ast.Help) -> CallGenerator:
         yield from ()

@@ -12,6 +12,7 @@ from scope_ptz.planner.grammar.instruction_tree import (
     Move,
     Report,
     Step,
+    Track,
     Turn,
     Unclear,
     ZoomTo,
@@ -23,6 +24,9 @@ from scope_ptz.planner.grammar.parsing.parts.clause import Clause, NotUnderstood
 from scope_ptz.planner.grammar.parsing.parts.noun_phrases import thing_of
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match
 
+FOLLOWS_FOR_A_TIME = "I follow things for a time that you give me. For how many seconds shall I follow it?"
+"""The question about "follow him until he stops": what ends it is not looked for while the camera follows."""
+
 _CENTRED = "(?P<thing>_+?) BE (CENTREWORD|in (DET)? (centre|center|middle|CENTREWORD) (of DET (PICTURE|VIEWNOUN|frame))?) (FILLER)*"
 """An "until" condition that a thing is centred: "the van is in the centre of the picture"."""
 
@@ -33,6 +37,8 @@ class LoopReader(BranchReader):
     def _loop(self, clause: Clause, steps: tuple[Step, ...]) -> Step:
         """Return the loop for a clause and the "until ..." that follows it."""
         until = self._take()
+        if any(isinstance(step, Track) for step in steps):
+            return Unclear(FOLLOWS_FOR_A_TIME)
         is_turn = full_match("(KEEP|FILLER|CAMERA|DET)* (PAN|TURN|PAN-ING|TURN-ING) (AROUND|FILLER|CAMERA|DET)*", clause.lexemes)
         if is_turn and self._peek() is None and (centred := full_match(_CENTRED, until.lexemes)):
             thing = thing_of(self.reader.source, centred["thing"])

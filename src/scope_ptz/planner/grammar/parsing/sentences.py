@@ -18,7 +18,10 @@ from scope_ptz.planner.grammar.instruction_tree import (
     Mention,
     Move,
     Read,
+    Snap,
     Step,
+    Thing,
+    Track,
     Unclear,
     ZoomTo,
 )
@@ -57,6 +60,12 @@ _REACHED = (
     "(it|them|one|PRON)|SELF (HAVEV|have|got|SEE|FIND|find) (found|got)? (it|them|one|PRON)|(it|PRON) (BE) (VISIBLE|found|NOW)+"
 )
 """Words after "when" that refer to the end of the previous loop: "pan left until you see a van. When you have it, ..."."""
+
+_IF_THERE_IS = frozenset({
+    "if_there_is", "if_there_are", "if_there_is_one", "if_there_are_any", "if_you_see_one", "if_you_see_any", "if_you_find_one",
+    "if_you_find_any", "if_you_spot_one", "if_you_spot_any",
+})  # fmt: skip
+"""Conditions that ask for the thing that the command before them names: "zoom in on the bus if there is one"."""
 
 _WHICH_FIRST = Unclear("Which of the two shall I do first?")
 _IN_ANY_CASE = Unclear("Shall I do the last part in any case, or only if I do not do the first?")
@@ -197,7 +206,10 @@ class SentenceReader(TourReader):
             return [Linked(clause.link, self._with_condition(there, done))]
         if after.marker in {"IFSO", "IFNOT"} and after.link == "" and not after.lexemes and steps:
             self._take()
-            answered: Condition = Answered() if after.marker == "IFSO" else Negated(Answered())
+            named = next((thing for step in steps if (thing := _sought_in(step)) is not None), None)
+            is_about_named = named is not None and after.opener is not None and after.opener.word in _IF_THERE_IS
+            met: Condition = Seen(named) if is_about_named and named is not None else Answered()
+            answered: Condition = met if after.marker == "IFSO" else Negated(Answered())
             return [Linked(clause.link, If(answered, tuple(steps)))]
         if after.marker in {"BEFORE", "AFTER"} and (ordered := self._with_order(clause, steps, before)) is not None:
             return ordered
@@ -320,12 +332,20 @@ def _with_merged_conditions(steps: list[Step]) -> list[Step]:
     if (
         isinstance(first, If)
         and isinstance(second, If)
-        and first.condition == Answered()
+        and isinstance(first.condition, Answered | Seen)
         and second.condition == Negated(Answered())
         and not first.otherwise
     ):
         return [*steps[:-2], replace(first, otherwise=second.then)]
     return steps
+
+
+def _sought_in(step: Step) -> Thing | None:
+    """Return the thing that a step zooms in on, follows or reads, if the step names it."""
+    if isinstance(step, AtPlaces):
+        return next((thing for inner in step.body if (thing := _sought_in(inner)) is not None), None)
+    thing = step.thing if isinstance(step, ZoomTo | Track | Read) else step.of if isinstance(step, Snap) else None
+    return thing if thing is not None and thing.text else None
 
 
 def _as_presence_count(clause: Clause, step: Step) -> Step:

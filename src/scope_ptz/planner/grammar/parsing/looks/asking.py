@@ -31,6 +31,8 @@ if TYPE_CHECKING:
 _NO_TOPIC = "(PAN|TILT|ZOOM|DEG|THEN|UNTIL|IFSO|IFNOT|IF|WRAPPER|NEGATED|to (CARRY|TURN|FREE))"
 
 
+_WHAT_ELSE = "(AND|FILLER)* (what|WHQ) else (BE (there|VISIBLE)|(can|DOV|MODAL|do) SELF SEE|SELF SEE)? (VISIBLE|here|FILLER|NOW)*"
+
 _STATES = frozenset({
     "open", "shut", "closed", "locked", "unlocked", "wet", "dry", "lit", "empty", "full", "free", "occupied", "busy", "broken",
     "damaged", "raised", "lowered", "clear", "blocked", "parked", "running", "moving", "on", "off", "clean", "dirty", "ready",
@@ -218,6 +220,8 @@ def _question_without_tell_me(
     end = "?" if has_question_mark else ""
     if lexemes[0].word == "see":
         return None  # "(would it be possible to) see the orchard at full zoom?" is a command
+    if full_match(_WHAT_ELSE, lexemes):
+        return Ask("describe", scope)
     if lexemes[0].word == "whether" and not search(_NO_TOPIC, lexemes):
         return Ask(text_of(source, lexemes) + end, scope, embedded=True)  # "I was wondering whether it is open"
     if has_question_mark and match_start("(SOMEONE|NOONE|everyone|everybody|nothing|something) _", lexemes):
@@ -264,7 +268,7 @@ def _question_without_tell_me(
     question = _verbless_question(source, lexemes, has_question_mark=has_question_mark or is_choice)
     if question is not None:
         return Ask(question, scope)
-    if match := full_match(r"(what|how) about (?P<thing>_+)|(and) (?P<other>_+)", bare):
+    if match := full_match(r"(what|how) about (?P<thing>_+)|(and|or) (?P<other>_+)", bare):
         thing = thing_of(source, match["thing"] or match["other"])
         return WhatAbout(thing) if thing and has_question_mark else None
     if match := full_match(

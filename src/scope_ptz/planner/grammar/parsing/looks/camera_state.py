@@ -16,8 +16,8 @@ from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match
 
 _LEADS_BACK = (
-    r"(CARRY|TURN|PAN|SWITCH|RESET|SHOW|TAKE|AIM|put|take|it|CAMERA|SELF|me|us|right|straight|DET CAMERA|BACK|to|at|FILLER|GLUE|"
-    r"return|revert)*"
+    r"(CARRY|TURN|PAN|SWITCH|RESET|SHOW|TAKE|AIM|LIMIT|put|take|it|CAMERA|SELF|me|us|right|straight|DET CAMERA|BACK|to|at|FILLER|"
+    r"GLUE|return|revert)*"
 )
 _BEGAN = "(started|began|begun|came_in)"
 _AT_START = "(at|in|from) (the_start|DET (very)? (beginning|start|outset))"
@@ -31,8 +31,9 @@ _START = (
 
 _AFTER_START = "(from|with|at|on|in|out|off|GLUE|FILLER|AGAINWORD|NOW)*"
 _SEVERAL_BACK = (
-    "(FILLER)* UNDO (DET|last|previous)* ((?P<number>NUM)|(?P<both>both)) "
-    "((of)? (them|those|these|DET)* (moves|MOVES|TRIES|TURNNOUN|STEPNOUN|steps|commands|things)?) (FILLER)*"
+    "(FILLER)* (UNDO|go_back|(CARRY|TURN) (it|CAMERA|SELF)? BACK(?= NUM (moves|MOVES|STEPNOUN|steps|views|VIEWNOUN|PRESETNOUN)))"
+    " (DET|last|previous)* ((?P<number>NUM)|(?P<both>both)) "
+    "((of)? (them|those|these|DET)* (moves|MOVES|TRIES|TURNNOUN|STEPNOUN|steps|commands|things|VIEWNOUN|PRESETNOUN)?) (FILLER)*"
 )
 
 

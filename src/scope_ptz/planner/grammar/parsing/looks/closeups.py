@@ -29,6 +29,14 @@ if TYPE_CHECKING:
 
 
 MAX_SECONDS = 600
+FILLS_THE_VIEW = "A thing I zoom in on fills the view. Shall I do that, or zoom where I look now?"
+"""The question about a magnification for a zoom on a thing."""
+
+_MAGNIFIED = (
+    rf"{SKIP} ZOOM (IN|CLOSER|AMOUNTISH)* ((by)? NUM (X|PERCENT) (on|onto|upon) (?P<thing>_+)|"
+    rf"(on|onto|upon) (?P<thing>_+?) (COMMA|by)* NUM (X|PERCENT)) {SKIP}"
+)
+"""A zoom on a thing by a factor: "zoom in on it 3x"."""
 
 
 def read_step(source: Source, lexemes: Sequence[Lexeme], view: View | None) -> Step | tuple[Step, ...] | None:
@@ -160,6 +168,8 @@ def close_up_step(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
     )
     if full_match(rf"{SKIP} (fill) (DET)? (PICTURE|VIEWNOUN|frame) {SKIP}", lexemes):
         return ZoomTo(Thing())
+    if (magnified := full_match(_MAGNIFIED, lexemes)) is not None and thing_of(source, magnified["thing"]) is not None:
+        return Unclear(FILLS_THE_VIEW)
     for pattern in patterns:
         match = full_match(rf"{SKIP} {pattern} {SKIP}", lexemes)
         if not match:

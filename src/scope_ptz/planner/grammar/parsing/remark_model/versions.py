@@ -31,7 +31,8 @@ _EVENT = re.compile(r"^(?:before|after) (?:i|we|he|she|they|it|the|my|our|someon
 """The beginning of a clause about a time: "before the boss comes"."""
 
 _TAKING_BACK = re.compile(
-    rf"{AT_AN_END}|\b(?:{WITHDRAWAL}|jokes?|called (?:it|that|this) off|(?:never|not) to|(?:it|that|this) (?:should|must|ought|has to|needs)|nobody (?:wants|needs)"
+    rf"{AT_AN_END}|\b(?:{WITHDRAWAL}|jokes?|called (?:it|that|this) off|(?:never|not) to|nobody (?:wants|needs)"
+    r"|(?:it|that|this) (?:should|must|ought|has to|needs)"
     r"|(?:is|are|was)(?:n['’]t| not) (?:needed|necessary))\b",
     re.IGNORECASE,
 )

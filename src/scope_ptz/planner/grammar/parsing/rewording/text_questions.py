@@ -29,6 +29,8 @@ QUESTIONS = (
         r"(?:,? and tell me)?[:,] ((?:is|are) [^?]*?)\?*$",
         r"\1 in the whole scene?",
     ),
+    (r"^(?:and |so |ok,? )?still (?=(?:see|got|have|spot)\b[^?]*\?)", "can you still "),
+    (r"^(?:and |so |ok,? )?still (?=(?:in|on|at|there|visible|open|shut|closed|moving|running)\b[^?]*\?)", "is it still "),
     (r"\bppl\b", "people"),
     (r"\bhows\b", "how's"),
     (r"\bwheres\b", "where's"),
