@@ -158,7 +158,7 @@ def test_answers_judge_wholes_by_their_parts_and_name_what_is_absent(place: tupl
 
 def test_the_signs_include_the_lettering_on_buildings() -> None:
     text = ask("freight-yard", "car-park", "what do the signs say?").text
-    assert text.startswith('I can read 2 of the 20 signs in view: "1" and "35". The other 18 are ')
+    assert text.startswith('I can read 4 of the 20 signs in view: "1", "STAFF PARKING", "34" and "35". The other 16 are ')
     assert 'I can also read "ARKWRIGHT TIMBER" on the green industrial shed. A closer view may help with ' in text
 
 

@@ -7,10 +7,11 @@ from typing import Any
 
 import pytest
 
-from scope_ptz.english.grammar.questions.question_parser import parse_question
+from scope_ptz.english.grammar.questions.question_parser import parse_description, parse_question
 from scope_ptz.errors import NotUnderstoodError
 from scope_ptz.perception.ground_truth import GroundTruthPerception
 from scope_ptz.perception.ground_truth.answers import answer
+from scope_ptz.perception.ground_truth.thing_search import find
 from scope_ptz.perception.ground_truth.view import View, read_view
 from tests.perception import yard
 
@@ -49,6 +50,7 @@ VIEW = yard_with(CHANGES)
     [
         ("how many barriers are open?", "1 barrier is open."),
         ("how many barriers are lowered?", "1 barrier is lowered."),
+        ("is the barrier raised?", "Yes, 1 of the 2 barrier arms is raised: the one on the left."),
         ("is there a raised barrier?", "Yes, there is a raised barrier arm on the left."),
         (
             "is the station door open?",
@@ -68,6 +70,19 @@ VIEW = yard_with(CHANGES)
 )
 def test_states_and_loads(question: str, expected: str) -> None:
     assert answer(VIEW, parse_question(question))[0] == expected
+
+
+def test_the_barrier_is_the_barrier_arm_and_not_a_block_beside_it() -> None:
+    assert [t.name for t in find(VIEW, parse_description("barrier"))] == ["raised barrier arm", "lowered barrier arm"]
+    assert [t.name for t in find(VIEW, parse_description("water-filled barrier"))] == ["water-filled barrier"]
+
+
+@pytest.mark.parametrize(
+    ("driver", "expected"), [("yes", "Yes, the excavator has a driver."), ("no", "No, the excavator has no driver.")]
+)
+def test_a_driver_whom_the_scene_states_can_be_seen(driver: str, expected: str) -> None:
+    view = yard_with({"excavator-01": {"attributes": {"colour": "yellow", "driver": driver}}})
+    assert answer(view, parse_question("is anyone driving the excavator?"))[0] == expected
 
 
 @pytest.mark.anyio

@@ -118,7 +118,7 @@ SCENE = SceneFile(
 )  # fmt: skip
 
 
-def _sighting(instance: SceneInstance | SceneActor, low: Any, high: Any, projection: Projection) -> Sighting:
+def sighting(instance: SceneInstance | SceneActor, low: Any, high: Any, projection: Projection) -> Sighting:
     """A sighting of a box that nothing hides; its pixels fill half of the box."""
     corners = np.array([[x, y, z] for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])]) - CAMERA_M
     points = projection.points(corners / np.linalg.norm(corners, axis=1, keepdims=True))
@@ -137,10 +137,10 @@ def _sighting(instance: SceneInstance | SceneActor, low: Any, high: Any, project
 
 def truth(projection: Projection = PROJECTION) -> ViewTruth:
     """The ground truth of the whole yard, nearest first."""
-    found = [_sighting(i, i.box_min_m, i.box_max_m, projection) for i in SCENE.instances]
+    found = [sighting(i, i.box_min_m, i.box_max_m, projection) for i in SCENE.instances]
     for actor, row in zip(SCENE.actors, ACTORS, strict=True):
         (x, y, z), (w, d, h) = row[3], row[4]
-        found.append(_sighting(actor, (x - w / 2, y - d / 2, z), (x + w / 2, y + d / 2, z + h), projection))
+        found.append(sighting(actor, (x - w / 2, y - d / 2, z), (x + w / 2, y + d / 2, z + h), projection))
     boxes = {s.instance.id: s.box for s in found}
     legible = {id_: ok for id_, _, _, ok in TEXTS}
     texts = tuple(

@@ -67,6 +67,22 @@ def test_names_keep_their_capitals() -> None:
     assert 'The CCTV sign reads "ON".' in finish.text
 
 
+def test_a_name_that_forms_no_phrase_is_not_asked_for() -> None:
+    several = {"answer": f"{SMALL['answer']} A closer view may help with the out of use sign.", "known": False}
+    read = {"answer": 'The sign in the middle reads "OUT OF USE".', "known": True}
+    stage = Stage([several, True, read], lands=CLOSE, simulated=True)
+    assert 'The out of use sign reads "OUT OF USE".' in stage.run("what do the signs say?").text
+
+
+def test_the_text_on_another_thing_is_asked_for_by_the_name_of_that_thing() -> None:
+    small = {"answer": "The text is on the stone plinth, but it is too small to read.", "known": False}
+    stage = Stage([small, True, {"answer": 'The stone plinth reads "ALDER".', "known": True}], lands=CLOSE, simulated=True)
+    stage.run("what does the sign on the statue say?")
+    assert [arguments["question"] for _, arguments in stage.calls if "question" in arguments][
+        -1
+    ] == "What does the stone plinth say?"
+
+
 def test_it_says_how_many_signs_it_did_not_go_closer_to() -> None:
     several = {
         "answer": "There is text on the signs, but it is too small to read. "
@@ -75,8 +91,7 @@ def test_it_says_how_many_signs_it_did_not_go_closer_to() -> None:
     }
     finish = Stage([several, True, READ], lands=CLOSE, simulated=True).run("read every sign you can see")
     assert finish.text.startswith(
-        "I zoomed in on the exit sign, and put the camera back afterwards; I did not go closer to the other 7. "
-        'The sign reads "STOP".'
+        'I zoomed in on the exit sign, and put the camera back afterwards; I did not go closer to 7 more. The sign reads "STOP".'
     )
 
 

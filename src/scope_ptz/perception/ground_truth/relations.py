@@ -4,6 +4,7 @@
 overlap horizontally, with a tolerance of a tenth of the frame.
 - *behind / in front of*: further from / nearer to the camera by half a metre or more, and the boxes overlap horizontally, with a
 tolerance of a twentieth of the frame.
+- *in front of a building*: also before a front that the camera sees from the side: at most 4 m from it, and seen against it.
 - *near, next to, facing*: at most 4 m apart in the world; a part that touches or overlaps its whole is not near it.
 - *on, in, at, of*: a part of the other thing, or smaller, within its footprint and resting on or in it.
 - *on the left*: the centre lies in the left 40% of the frame; *in the left half*: in the left 50%; *in a corner*: in the 40% bands
@@ -25,6 +26,9 @@ from scope_ptz.perception.ground_truth.view import Thing, View
 
 BACKGROUND_CONCEPTS = frozenset({"surface", "sky"})
 """Background concepts, which do not count as objects."""
+
+BUILDING_CONCEPTS = frozenset({"building", "shop"})
+"""Things with a front, before which people stand."""
 
 NEAR_M = 4.0  # maximum gap between things that are next to each other
 ON_TOLERANCE_M = 0.3  # tolerance when testing whether one thing stands on another
@@ -70,14 +74,32 @@ def relation_holds(view: View, a: Thing, kind: tree.RelationKind, b: Thing) -> b
             return ay < by and _overlap_horizontally(a, b, 0.1)
         case "below":
             return ay > by and _overlap_horizontally(a, b, 0.1)
+        case "front" if _stands_before(a, b):
+            return not is_part
         case "front":
             return not is_part and a.distance_m <= b.distance_m - DEPTH_STEP_M and _overlap_horizontally(a, b, SIDE_TOLERANCE)
         case "behind":
-            return not is_part and a.distance_m >= b.distance_m + DEPTH_STEP_M and _overlap_horizontally(a, b, SIDE_TOLERANCE)
+            return (
+                not is_part
+                and not _stands_before(a, b)
+                and a.distance_m >= b.distance_m + DEPTH_STEP_M
+                and _overlap_horizontally(a, b, SIDE_TOLERANCE)
+            )
         case "near" | "facing":
             return a.gap_m(b) <= NEAR_M and (not is_part or a.gap_m(b) > 0)  # the signal beside a dock door, which is its part
         case "on":
             return view.belongs(a.id, b.id) or _rests_on(a, b)
+
+
+def _stands_before(a: Thing, b: Thing) -> bool:
+    """Return whether ``a`` stands before the front of the building ``b``, which the camera sees from the side.
+
+    Its nearest corner may be nearer to the camera than ``a``. But ``a`` would be hidden if it were behind the building.
+    """
+    if not b.concepts & BUILDING_CONCEPTS or a.concepts & (BUILDING_CONCEPTS | BACKGROUND_CONCEPTS) or a.gap_m(b) > NEAR_M:
+        return False
+    x, y = a.box.centre
+    return b.box.x_min <= x <= b.box.x_max and b.box.y_min <= y <= b.box.y_max
 
 
 def _overlap_horizontally(a: Thing, b: Thing, tolerance: float) -> bool:

@@ -8,12 +8,14 @@ from functools import lru_cache
 
 from scope_ptz import english
 from scope_ptz.english.grammar.lexicon import lexicon, nouns_in, singular_phrase
-from scope_ptz.perception.ground_truth.view import Thing, View, head_of
+from scope_ptz.perception.ground_truth.view import Thing, View, head_of, trades_of
 from scope_ptz.perception.ground_truth.vocabulary import FILLER_WORDS, are_opposites, canonical_form, opposites_of
 from scope_ptz.simulator.models import Attribute
 
 TEXT_KEYS = frozenset(["reads", "text", "plate", "lettering", "number", "signal", "sign", "label", "readable_by", "inscription"])
 """Attributes that repeat the text on a thing. They are not used, because only legible text may be reported."""
+_LETTERING_KEYS = TEXT_KEYS - {"number", "signal", "sign", "readable_by"}
+"""Those that say that something is written on the thing itself. A number or a signal may be on a part, such as a plate."""
 _ROLE_KEYS = frozenset({"role", "stall", "area", "facing"})
 """Attributes that say who somebody is or where, and not what they have."""
 CLOTHING_KEYS = frozenset({"wearing", "clothing", "clothes", "outfit", "ppe"})
@@ -69,6 +71,12 @@ def facts(thing: Thing) -> list[tuple[str, Attribute]]:
     return [(k, v) for k, v in thing.attributes.items() if k not in TEXT_KEYS]
 
 
+def bears_text(thing: Thing) -> bool:
+    """Return whether the scene states that something is written on a thing, wherever on it and whether or not it can be read."""
+    keys = _LETTERING_KEYS | {"number"} if thing.concepts & {"vehicle", "machine"} else _LETTERING_KEYS
+    return any(str(thing.attributes.get(key, "")).lower() not in ABSENT_VALUES for key in keys)
+
+
 def is_colour(value: object) -> bool:
     """Return whether an attribute value is a colour."""
     words = english.letters(str(value)).split()
@@ -81,6 +89,14 @@ def is_worn(key: str) -> bool:
 
 
 _CLOTHES = frozenset({"hard hat", "hi-vis vest", "jacket", "trouser", "boot", "glove", "hat"})
+
+
+def is_garment(key: str) -> bool:
+    """Return whether an attribute is about clothes that give a person their colour: "in yellow" is not about a yellow helmet."""
+    return any(lexicon().concept(word) in _GARMENTS for word in key_words(key))
+
+
+_GARMENTS = _CLOTHES - {"hard hat", "hat", "boot", "glove"}
 
 
 def names_clothes(word: str) -> bool:
@@ -137,7 +153,7 @@ def fits_noun(view: View, thing: Thing, noun: str) -> bool:
         # One person of unknown sex may be called a man or a woman, but must not be counted among "the men".
         return sex == SEXES[singular] if sex is not None else not english.is_plural(noun)
     name, category = english.letters(head_of(thing.name)), english.letters(thing.category)
-    if singular in (category, name) or name.endswith(f" {singular}"):
+    if singular in (category, name) or name.endswith(f" {singular}") or singular in trades_of(thing.sighting.instance):
         return True
     concept = lexicon().concept(noun)
     return concept is not None and concept in thing.concepts and (concept == singular or singular not in view.nouns)
@@ -240,7 +256,9 @@ def has_item(view: View, thing: Thing, words: Sequence[str], amount: int | None 
         return any(str(v).lower() not in ABSENT_VALUES and all(x in value_words(v) for x in others) for v in carried)
     is_only_colour = noun in english.COLOURS  # "in red" is about clothes, and not about an umbrella
     for key, value in facts(thing):
-        is_about = is_worn(key) or key in CLOTHING_KEYS if is_only_colour and "person" in thing.concepts else key not in _ROLE_KEYS
+        is_about = (
+            is_garment(key) or key in CLOTHING_KEYS if is_only_colour and "person" in thing.concepts else key not in _ROLE_KEYS
+        )
         if is_about and attribute_has(key, value, names_of(noun), others, amount):
             return True
     parts = [t for t in view.things if t.id != thing.id and view.belongs(t.id, thing.id)]

@@ -74,6 +74,11 @@ def find_excluding_wearers(view: View, description: tree.Description) -> list[Th
     return sorted(matches, key=visible_pixels, reverse=True)
 
 
+def find_references(view: View, description: tree.Description) -> list[Thing]:
+    """Return the things that a place refers to ("the path" in "on the path"). A part of a surface is enough for that."""
+    return find(view.with_surfaces, description)
+
+
 def _find_compound(view: View, phrase: tree.Phrase) -> list[Thing]:
     """Return "raised barrier arms" for "raised barriers", if only things of a compound name have such a state."""
     head, after = split_after_noun(view, phrase.words)
@@ -90,6 +95,8 @@ def _find_wearers(view: View, phrase: tree.Phrase) -> list[Thing]:
     """Return the people who wear what the phrase describes ("hard hats"), because clothes are not separate things."""
     if phrase.tests or phrase.order or phrase.ordinal or not nouns_in(phrase.words) or is_person(phrase.words):
         return []
+    if (concept := lexicon().concept(phrase.words[-1])) in view.concepts and "animal" in lexicon().kinds(concept):
+        return []  # a dog walker is no dog, if the scene has dogs
     return sorted(
         (t for t in view.things if "person" in t.concepts and has_item(view, t, phrase.words)), key=visible_pixels, reverse=True
     )
@@ -204,6 +211,9 @@ def _find_by_noun(view: View, noun: str, others: Sequence[str], include_parts: b
     if lexicon().concept(noun) == "thing":
         return [t for t in view.things if _is_object(view, t) or (include_parts and not t.concepts & BACKGROUND_CONCEPTS)]
     named = [t for t in view.things if fits_noun(view, t, noun)]
+    if not others and not english.is_plural(noun):
+        # "The barrier" is the barrier arm, if there is one, and not a block of concrete beside it.
+        named = [t for t in view.things if "boom gate" in t.concepts and t.category.startswith(f"{noun} ")] or named
     if lexicon().concept(noun) == "vehicle" and others and not any(_modifiers_hold(view, t, others) for t in named):
         return [t for t in view.things if "machine" in t.concepts]
     return named
@@ -313,7 +323,7 @@ def _has(view: View, thing: Thing, what: tree.Description) -> bool:
 
 def has_relation(view: View, thing: Thing, kind: tree.RelationKind, other: tree.Description, preposition: str = "") -> bool:
     """Return whether a thing has a relation to any thing that matches ``other``."""
-    others = find_excluding_wearers(view, other)
+    others = find_excluding_wearers(view.with_surfaces, other)
     if preposition in INSIDE and "person" in thing.concepts and _names_vehicle(view, other):
         return any(view.belongs(thing.id, o.id) for o in others)  # a lorry driver is not always in the lorry
     if _is_only_colour(other) and "person" in thing.concepts:

@@ -15,7 +15,7 @@ from scope_ptz.english.grammar.lexicon import lexicon, singular_phrase
 from scope_ptz.perception.base import Box
 from scope_ptz.simulator.actors import path_position
 from scope_ptz.simulator.models import Attribute, SceneActor, SceneFile, SceneInstance
-from scope_ptz.simulator.truth import Sighting, TextSighting, ViewTruth
+from scope_ptz.simulator.truth import MIN_VISIBLE_PX, Sighting, TextSighting, ViewTruth
 
 NOTICEABLE_PX = 20
 """A thing with at most this many visible pixels is not noticed, so it counts as absent."""
@@ -153,6 +153,15 @@ class View:
         """Return a view whose things also include the unclear ones, to find out whether a description may match more things."""
         return replace(self, things=(*self.things, *self.unclear), unclear=())
 
+    @cached_property
+    def with_surfaces(self) -> View:
+        """A view whose things also include the surfaces in the picture of which the frame shows only a part.
+
+        Where somebody stands on a path, the path is in the picture, wherever the rest of it is.
+        """
+        surfaces = [t for t in self.unclear if "surface" in t.concepts and t.sighting.pixels >= MIN_VISIBLE_PX]
+        return replace(self, things=(*self.things, *surfaces)) if surfaces else self
+
     def top_level(self) -> tuple[Thing, ...]:
         """Return the things that are not parts of another visible thing."""
         return tuple(t for t in self.things if t.parent is None or t.parent not in self.by_id)
@@ -190,6 +199,7 @@ def _read_facts(scene: SceneFile) -> SceneFacts:
     values: dict[str, set[str]] = {}
     nouns: set[str] = set()
     for instance in objects:
+        nouns |= trades_of(instance)
         nouns |= {singular_phrase(n.lower()) for n in (instance.category, head_of(instance.name)) if n.strip()}
         for key, value in instance.attributes.items():
             values.setdefault(key, set()).update(english.letters(str(value)).split())
@@ -238,6 +248,15 @@ def head_of(name: str) -> str:
     for word in PART_WORDS:
         head = head.partition(word)[0]
     return head
+
+
+def trades_of(instance: SceneInstance | SceneActor) -> frozenset[str]:
+    """Return the words for the owner of a shop or an office, which also name the place: "the butcher" for a butcher's shop."""
+    match = _SHOP_OF_TRADE.match(instance.name.lower())
+    return frozenset({match["trade"], f"{match['trade']}s", f"{match['trade']}'s"}) if match else frozenset()
+
+
+_SHOP_OF_TRADE = re.compile(r"(?P<trade>[a-z]+)'s (?:shop|office|surgery)\b")
 
 
 def concepts_of(instance: SceneInstance | SceneActor) -> frozenset[str]:

@@ -128,7 +128,8 @@ class NounPhrases:
         The last noun ("red or blue cars") and its modifiers ("cars and vans on the left") apply to all items. If every item has an
         own article, the modifiers belong to the last item: "the van or the worker with a broom".
         """
-        phrases: list[tree.Phrase] = instances_of(children, tree.Phrase)
+        first, *rest = instances_of(children, tree.Phrase)
+        phrases: list[tree.Phrase] = [first, *(_with_noun_for_one(p, first) for p in rest)]
         last = phrases[-1]
         spans = nouns_in(last.words)
         if not spans and len(phrases) == 2 and nouns_in(phrases[0].words) and not last.tests and tokens_of(children, "AND"):
@@ -282,3 +283,13 @@ class NounPhrases:
         return _Predicate((tree.Any(tests),) if tokens_of(children, "OR") and len(tests) > 1 else tests)
 
     predicate_at = that
+
+
+def _with_noun_for_one(phrase: tree.Phrase, first: tree.Phrase) -> tree.Phrase:
+    """Return "a blue car" for "a blue one" after "a red car". Other phrases are returned unchanged."""
+    spans = nouns_in(first.words)
+    if not spans or len(phrase.words) < 2 or phrase.words[-1] not in {"one", "ones"} or nouns_in(phrase.words[:-1]):
+        return phrase
+    *words, noun = [x for x in first.words[slice(*spans[0])] if x not in english.COLOURS]  # "an orange cone or a red one"
+    noun = english.singular(noun) if phrase.words[-1] == "one" else noun
+    return replace(phrase, words=(*phrase.words[:-1], *words, noun))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from scope_ptz.english.grammar.questions import question_tree as tree
 from scope_ptz.perception.ground_truth.answers.compared_things import (
     answer_compare,
@@ -25,6 +27,7 @@ from scope_ptz.perception.ground_truth.answers.ordered_things import answer_in_o
 from scope_ptz.perception.ground_truth.answers.scene import answer_describe, answer_happening
 from scope_ptz.perception.ground_truth.answers.stated_facts import answer_stated_fact
 from scope_ptz.perception.ground_truth.answers.thing_names import TruthAnswer, unknown_answer
+from scope_ptz.perception.ground_truth.answers.undecided import undecided_sex, without_open_sex
 from scope_ptz.perception.ground_truth.answers.unread_texts import unread_reason
 from scope_ptz.perception.ground_truth.answers.values import answer_attribute
 from scope_ptz.perception.ground_truth.answers.verdicts import answer_is_a, answer_yes_no
@@ -37,6 +40,15 @@ def answer(view: View, question: tree.Question | None) -> TruthAnswer:
     """Return the answer to a parsed question; ``question`` is None if the parser did not understand the text."""
     if isinstance(question, tree.Exists | tree.Count | tree.What | tree.YesNo) and (reason := unread_reason(view, question)):
         return unknown_answer(reason)
+    if isinstance(question, tree.Ask | tree.Where | tree.HowFar) and question.what is not None:
+        if reason := undecided_sex(view, question.what):
+            return unknown_answer(reason)
+        question = replace(question, what=without_open_sex(view, question.what))
+    return _answer_by_form(view, question)
+
+
+def _answer_by_form(view: View, question: tree.Question | None) -> TruthAnswer:
+    """Return the answer to a question, by the form of the question."""
     match question:
         case tree.Exists():
             return answer_exists(view, question)

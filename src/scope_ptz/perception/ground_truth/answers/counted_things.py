@@ -16,16 +16,23 @@ from scope_ptz.perception.ground_truth.answers.restating import (
     unmodelled_background,
     unmodelled_place,
 )
+from scope_ptz.perception.ground_truth.answers.text_regions import find_sign_regions
 from scope_ptz.perception.ground_truth.answers.thing_names import (
     TruthAnswer,
     coloured_name,
     is_or_are,
     known_answer,
     names_with_positions,
+    position_words,
     unknown_answer,
 )
 from scope_ptz.perception.ground_truth.answers.unclear import answer_unclear, more_may_be
-from scope_ptz.perception.ground_truth.answers.undecided import undecided_people, undecided_reason, with_plural_sex
+from scope_ptz.perception.ground_truth.answers.undecided import (
+    undecided_people,
+    undecided_reason,
+    with_plural_sex,
+    without_open_sex,
+)
 from scope_ptz.perception.ground_truth.answers.vehicle_interiors import answer_about_occupants, asked_vehicle
 from scope_ptz.perception.ground_truth.thing_facts import SEXES, has_item
 from scope_ptz.perception.ground_truth.thing_search import find, find_excluding_wearers, holds, without_waiting
@@ -54,15 +61,21 @@ def answer_exists(view: View, question: tree.Exists) -> TruthAnswer:
         return unknown_answer(whether)
     what = question.what
     matches = find(view, what)
-    if len(matches) > 1 or any(SEXES.get(x) == "female" for p in what.phrases for x in p.words):
-        what = with_plural_sex(what)  # several people must not be called women if their sex is unknown
+    if len(matches) > 1 or any(x in SEXES for p in what.phrases for x in p.words):
+        what = with_plural_sex(what)  # nobody is called a man or a woman if their sex is unknown
         matches = find(view, what)
     if not matches and unmodelled_place(view, what):
         return unknown_answer(whether)
     if not matches and (vehicle := asked_vehicle(view, question.what)) is not None:
         return answer_about_occupants(view, question.what, vehicle)
-    if not matches and undecided_people(view, what):
-        return unknown_answer(whether)
+    if not matches and (people := undecided_people(view, what)):
+        only_sex_is_open = not plural and find(view, question.what) == people
+        one = english.article(question.what.phrases[0].words[-1])
+        person = without_open_sex(view, question.what)
+        seen = f"{english.article(noun_phrase(view, person))}, {position_words(people[0])}"
+        return unknown_answer(
+            f"there is {seen}, but I cannot tell whether it is {one}" if only_sex_is_open and len(people) == 1 else whether
+        )
     if question.least != 1 or question.most is not None:
         if possible := unclear_matches(view, what):
             return _answer_unclear_bounds(view, question, len(matches), len(possible))
@@ -117,6 +130,8 @@ def describe_matches(view: View, what: tree.Description, matches: list[Thing]) -
             else f"there is {names_with_positions(matches)}"
         )
     statement = f"there are {len(matches)} {noun_phrase(view, what, plural=True)}"
+    if len(what.phrases) > 1 and len(matches) > MAX_LISTED:
+        return f"there are {_counts_per_phrase(view, what)}"
     return (
         f"{statement}{f', {on}' if are_wearers else ':'} {names_with_positions(matches)}"
         if len(matches) <= MAX_LISTED
@@ -141,6 +156,11 @@ def answer_count(view: View, question: tree.Count) -> TruthAnswer:
         return unknown_answer(how_many)
     if not total and (vehicle := asked_vehicle(view, description)) is not None:
         return answer_about_occupants(view, description, vehicle, is_yes_no=False)
+    if not total and (signs := find_sign_regions(view, description)):
+        least = f"at least {len(signs)} {noun_phrase(view, question.what, plural=len(signs) != 1)}"
+        return known_answer(
+            f"{least} {predicate_words(view, tests, len(signs))}" if tests else f"there {is_or_are(len(signs))} {least}"
+        )
     is_open = any(
         holds(view, t, test) is None
         for t in find(view, question.what)
@@ -158,7 +178,7 @@ def answer_count(view: View, question: tree.Count) -> TruthAnswer:
     if not total and len(question.what.phrases) > 1:
         return known_answer(none_in_view(view, description))
     if len(question.what.phrases) > 1:
-        return known_answer(f"there {is_or_are(total)} {total} in view: {_counts_per_phrase(view, question)}")
+        return known_answer(f"there {is_or_are(total)} {total} in view: {_counts_per_phrase(view, question.what, question.tests)}")
     more = more_may_be(view, description)
     statement = f"{'at least ' if more else ''}{total or 'no'} {noun_phrase(view, question.what, plural=total != 1)}"
     if question.tests:
@@ -182,8 +202,8 @@ def _how_many_parts(view: View, question: tree.Count) -> str:
     return f"I cannot tell how many {noun_phrase(view, question.what, plural=True)} {definite_as_asked(view, owner)} {verb}"
 
 
-def _counts_per_phrase(view: View, question: tree.Count) -> str:
+def _counts_per_phrase(view: View, what: tree.Description, tests: tuple[tree.Test, ...] = ()) -> str:
     """Return the count for each noun phrase in a description: "4 cars and 1 van"."""
-    parts = [tree.Description((p,)) for p in question.what.phrases]
-    counts = [(len(find(view, add_tests(p, question.tests))), p) for p in parts]
-    return english.listing([f"{n} {noun_phrase(view, p, plural=n != 1)}" for n, p in counts])
+    parts = [tree.Description((p,)) for p in what.phrases]
+    counts = [(len(find(view, add_tests(p, tests))), p) for p in parts]
+    return english.listing([f"{n or 'no'} {noun_phrase(view, p, plural=n != 1)}" for n, p in counts])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Sequence
 
 from scope_ptz import english
@@ -20,7 +21,8 @@ from scope_ptz.perception.ground_truth.answers.unread_texts import (
     things_with_text,
     unread_rest,
 )
-from scope_ptz.perception.ground_truth.thing_facts import colour_of
+from scope_ptz.perception.ground_truth.relations import stands_above
+from scope_ptz.perception.ground_truth.thing_facts import bears_text, colour_of
 from scope_ptz.perception.ground_truth.thing_search import find
 from scope_ptz.perception.ground_truth.view import Thing, View, concepts_of
 from scope_ptz.simulator.truth import TextSighting
@@ -40,11 +42,13 @@ def answer_read(view: View, question: tree.Read) -> TruthAnswer:
         if all(map(names_plates, what.phrases)):
             # A plate is no thing of its own: that "of the taxi" is read on the taxi, and "the number plate" on all vehicles.
             return answer_read(view, tree.Read(owners[0] if owners else None, plate=True))
-        if owners and all(_names_any_sign(view, phrase) for phrase in what.phrases) and find(view, owners[0]):
+        if owners and all(names_any_sign(view, phrase) for phrase in what.phrases) and find(view, owners[0]):
             return answer_read(view, tree.Read(owners[0]))  # a sign on a cabin may be the cabin's own lettering
         return unknown_answer(f"I cannot tell: {none_in_view(view, what)}")
     things = things if is_plural(what) else _only_of_colour(what, things)
     texts = texts_on(view, things, question.plate)
+    if not texts and not question.plate and (bases := _bases_with_text(view, things)):
+        return _quote_base(view, bases[0])
     if _is_any_sign(what) and (lettering := _legible_lettering(view, texts)):
         reply = _quote_signs_and_lettering(view, what, texts, lettering)
     else:
@@ -55,7 +59,22 @@ def answer_read(view: View, question: tree.Read) -> TruthAnswer:
     return reply._replace(text=f"{reply.text} {closer}.") if closer else reply
 
 
-def _names_any_sign(view: View, phrase: tree.Phrase) -> bool:
+def _bases_with_text(view: View, things: Sequence[Thing]) -> list[Thing]:
+    """Return the things with text on which some things stand, as part of them: the plinth of a statue."""
+    by_id = {t.id: t for t in view.with_cut_off_texts().things}
+    bases = [(t, by_id[t.parent]) for t in things if t.parent is not None and t.parent in by_id]
+    return [base for t, base in bases if stands_above(t, base) and view.texts_on(base)]
+
+
+def _quote_base(view: View, base: Thing) -> TruthAnswer:
+    """Answer with the text on what a thing stands on, which people call the text on the thing."""
+    texts = view.texts_on(base)
+    if any(t.legible for t in texts):
+        return known_answer(f"the {base.name} reads {english.listing(quotes(texts))}{unread_rest(view, texts)}")
+    return unknown_answer(f"the text is on the {base.name}, but {illegibility(texts)} to read")
+
+
+def names_any_sign(view: View, phrase: tree.Phrase) -> bool:
     """Return whether a phrase is a noun for a sign without other words: "sign", "name plate"."""
     spans = nouns_in(phrase.words, view.nouns)
     concept = lexicon().concept(" ".join(phrase.words))
@@ -136,6 +155,8 @@ def _quote_texts(view: View, what: tree.Description | None, texts: Sequence[Text
     if not any(t.legible for t in texts):
         if not (texts or plate) and what and (clocks := [t for t in find(view, what) if "clock" in t.concepts]):
             return answer_clock_time(clocks)
+        if not (texts or plate) and what and any(map(bears_text, find(view, what))):
+            return unknown_answer(f"I cannot tell what is written on {subject}")
         return _nothing_legible(subject if what else "", texts, plate)
     if plate:
         return TruthAnswer(english.sentence(f"the number plate reads {english.listing(quotes(texts))}"))
@@ -185,7 +206,10 @@ def _quoted(view: View, texts: Sequence[TextSighting], readers: Sequence[str], r
     """Return the quotations after ``reads``. The rows of a list have a line each, and several lists have a heading each."""
     by_thing = {thing: [t for t in texts if t.text.parent == thing] for thing in readers}
     if not any(block.is_list for block in _blocks(texts)):
-        return f"{reads} {english.listing(quotes(texts))}"
+        # A share such as "7 of the 10 containers" needs the number of those that bear the same text.
+        bearers = Counter(quote for on_thing in by_thing.values() for quote in quotes(on_thing))
+        counted = [f"{q} ({bearers[q]} times)" if bearers[q] > 1 and not reads else q for q in quotes(texts)]
+        return f"{reads} {english.listing(counted)}"
     rows = {thing: "\n".join(quotes(on_thing)) for thing, on_thing in by_thing.items()}
     if len(rows) == 1 and reads:
         return f"{reads}:\n{rows[readers[0]]}"
@@ -216,6 +240,8 @@ def answer_text_exists(view: View, question: tree.TextExists) -> TruthAnswer:
         return known_answer(f"yes, I can read {english.listing(quotes(texts))}{place}")
     if texts:
         return unknown_answer(f"there is text {where}, but {illegibility(texts)} to read")
+    if question.what is not None and any(map(bears_text, find(view, question.what))):
+        return unknown_answer(f"I cannot tell whether there is text {where}")
     return known_answer(f"no, I can see no text {where}{' from here' if place else ''}")
 
 
@@ -225,7 +251,9 @@ def answer_from_signs(view: View, signs: Sequence[Thing], fact: str) -> TruthAns
     if legible := [t for t in texts if t.legible and ("limit" not in fact or _is_speed_limit(view, t))]:
         if english.is_plural(fact):
             return known_answer(f"the {fact} are given as {english.listing(quotes(legible))}")
-        return TruthAnswer(english.sentence(f"the {fact} reads {english.listing(quotes(legible))}"))
+        numbers = quotes(legible)
+        signs_read = f"{fact} signs read" if len(numbers) > 1 else f"{fact} sign reads"
+        return known_answer(f"the {signs_read if 'limit' in fact else f'{fact} reads'} {english.listing(numbers)}")
     illegible = [t for t in texts if not t.legible]
     if not illegible:
         return _quote_texts(view, None, texts, plate=False) if texts else None

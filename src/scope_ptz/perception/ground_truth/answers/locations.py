@@ -8,6 +8,7 @@ from dataclasses import replace
 from scope_ptz import english
 from scope_ptz.english.grammar.lexicon import nouns_in
 from scope_ptz.english.grammar.questions import question_tree as tree
+from scope_ptz.english.grammar.questions.ambiguity import is_person
 from scope_ptz.perception.ground_truth.answers.clock_times import answer_clock_time
 from scope_ptz.perception.ground_truth.answers.counted_things import add_tests
 from scope_ptz.perception.ground_truth.answers.legible_text import answer_read
@@ -17,6 +18,7 @@ from scope_ptz.perception.ground_truth.answers.restating import (
     none_in_view,
     noun_phrase,
     predicate_words,
+    unmodelled_background,
     unmodelled_place,
     words_after_noun,
 )
@@ -103,6 +105,9 @@ def answer_what(view: View, question: tree.What) -> TruthAnswer:
     if question.tests == (tree.Says(()),):  # "what signs can you read?" asks for what they say
         return answer_read(view, tree.Read(question.what))
     missing = next((m for m in (missing_reference(view, t) for t in question.tests) if m is not None), None)
+    if missing is not None and unmodelled_background(view, missing):
+        kind = "who" if is_person(question.what.phrases[0].words) else f"which {noun_phrase(view, question.what)}"
+        return unknown_answer(f"I cannot tell {kind} {predicate_words(view, question.tests, 1)}")
     if missing is not None:
         return answer_absent(view, missing)
     description = add_tests(question.what, question.tests)
@@ -156,7 +161,9 @@ def _answer_no_match(view: View, question: tree.What, description: tree.Descript
         return unknown_answer(f"I cannot tell what is {where}")
     open_tests = [t for t in (*question.tests, *question.what.phrases[0].tests) if isinstance(t, tree.Has)]
     bare = tree.Description(tuple(replace(p, tests=()) for p in question.what.phrases))
-    if any(holds(view, t, test) is None or find(view, test.what) for t in find(view, bare) for test in open_tests):
+    if any(
+        holds(view, t, test) is None or (not test.worn and find(view, test.what)) for t in find(view, bare) for test in open_tests
+    ):
         return unknown_answer(f"I cannot tell which {noun_phrase(view, bare, plural=True)} {predicate_words(view, open_tests, 2)}")
     if description.phrases[0].words == ("thing",):
         places = [t.other for t in question.tests if isinstance(t, tree.Relation) and not find(view, t.other)]

@@ -280,9 +280,10 @@ def unmodelled_background(view: View, description: tree.Description) -> str:
 
 
 def unmodelled_place(view: View, description: tree.Description) -> str:
-    """Return the unmodelled background in a description ("open lanes", "people in the street"), or an empty string."""
-    relations = [t for p in description.phrases for t in p.tests if isinstance(t, tree.Relation) and t.kind == "on"]
+    """Return the unmodelled background in a description ("people in the street", "nearest to the road"), or an empty string."""
+    relations = [t for p in description.phrases for t in p.tests if isinstance(t, tree.Relation)]
     places = [t.other for t in relations if t.preposition != "of"]  # a pile of sand is a thing
+    places += [p.order.reference for p in description.phrases if p.order is not None and p.order.reference is not None]
     return next((words for place in (description, *places) if (words := unmodelled_background(view, place))), "")
 
 

@@ -47,10 +47,15 @@ class TextBlock:
 
 def blocks_of(texts: Sequence[TextSighting]) -> list[TextBlock]:
     """Return the blocks of the texts on one thing, in the order of their first texts. Equal blocks are returned once."""
+    blocks = (TextBlock(tuple(tuple(t.text.text for t in row) for row in _rows(group))) for group in groups_of(texts))
+    return list(dict.fromkeys(blocks))
+
+
+def groups_of(texts: Sequence[TextSighting]) -> list[list[TextSighting]]:
+    """Return the texts on one thing in groups that are read together, in the order of their first texts."""
     groups = [[text] for text in texts]
     groups = _merged(groups, lambda one, other: any(_are_neighbours(a.text, b.text) for a in one for b in other))
-    groups = _merged(groups, _share_rows)
-    return list(dict.fromkeys(TextBlock(tuple(tuple(t.text.text for t in row) for row in _rows(group))) for group in groups))
+    return _merged(groups, _share_rows)
 
 
 def _merged(groups: list[_Group], belong_together: Callable[[_Group, _Group], bool]) -> list[_Group]:

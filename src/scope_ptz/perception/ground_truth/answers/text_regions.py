@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 from scope_ptz.english.grammar.questions import question_tree as tree
 from scope_ptz.perception.base import Box
-from scope_ptz.perception.ground_truth.answers.legible_text import names_plates, texts_on
+from scope_ptz.perception.ground_truth.answers.legible_text import names_any_sign, names_plates, texts_on
+from scope_ptz.perception.ground_truth.answers.text_blocks import groups_of
 from scope_ptz.perception.ground_truth.thing_search import find
 from scope_ptz.perception.ground_truth.view import View
 from scope_ptz.simulator.truth import TextSighting
@@ -40,6 +41,17 @@ def find_text_regions(view: View, description: tree.Description) -> list[TextReg
         _region([t for t in texts if t.text.parent == holder], "number plate" if plate else "text")
         for holder in sorted(heights, key=lambda holder: (-heights[holder], holder))
     ]
+
+
+def find_sign_regions(view: View, description: tree.Description) -> list[TextRegion]:
+    """Return the regions of "signs on the gantry", if its signs are no things of their own: those of the texts read together."""
+    owners = [t.other for p in description.phrases for t in p.tests if isinstance(t, tree.Relation) and t.kind == "on"]
+    if not owners or not all(names_any_sign(view, phrase) for phrase in description.phrases):
+        return []
+    texts = [t for t in texts_on(view, find(view, owners[0]), plate=False) if t.cap_height_px >= _MIN_LOCATED_CAP_PX]
+    bearers = dict.fromkeys(t.text.parent for t in texts)
+    groups = [group for bearer in bearers for group in groups_of([t for t in texts if t.text.parent == bearer])]
+    return sorted((_region(group, "sign") for group in groups), key=lambda region: -region.box.width * region.box.height)
 
 
 def _region(texts: Sequence[TextSighting], name: str) -> TextRegion:

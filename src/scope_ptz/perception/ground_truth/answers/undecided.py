@@ -11,10 +11,11 @@ from dataclasses import replace
 from scope_ptz import english
 from scope_ptz.english.grammar.lexicon import singular_phrase
 from scope_ptz.english.grammar.questions import question_tree as tree
+from scope_ptz.english.grammar.questions.ambiguity import is_person
 from scope_ptz.perception.ground_truth.answers.restating import words_after_noun
 from scope_ptz.perception.ground_truth.stated_items import as_worn
 from scope_ptz.perception.ground_truth.thing_facts import SEXES, fits_words, is_sexed, stated_sex
-from scope_ptz.perception.ground_truth.thing_search import find, find_phrase, holds, is_place
+from scope_ptz.perception.ground_truth.thing_search import find, find_phrase, holds, is_place, split_after_noun
 from scope_ptz.perception.ground_truth.view import Thing, View
 
 WAITING = "waiting"
@@ -48,6 +49,7 @@ def undecided_reason(view: View, description: tree.Description) -> str:
 
 def _candidates(view: View, phrase: tree.Phrase) -> list[Thing]:
     """Return the people who match a phrase apart from the words that the scene leaves open."""
+    phrase = _with_activity_as_test(view, phrase)
     sexed = _sexed_noun(phrase)
     if sexed:
         wider = replace(phrase, words=tuple("people" if x == sexed else x for x in phrase.words))
@@ -66,14 +68,25 @@ def _candidates(view: View, phrase: tree.Phrase) -> list[Thing]:
     return [t for t in find_phrase(view, wider) if "person" in t.concepts and fits_words(view, t, [WAITING]) is None]
 
 
+def _with_activity_as_test(view: View, phrase: tree.Phrase) -> tree.Phrase:
+    """Return "people" with the test "working" for "people working"."""
+    head, after = split_after_noun(view, phrase.words)
+    if WAITING in after or not is_person(head) or not any(x.endswith("ing") for x in after):
+        return phrase
+    return replace(phrase, words=head, tests=(tree.Is(after), *phrase.tests))
+
+
 def _may_be_open(test: tree.Test) -> bool:
-    """Return whether a test is for people's clothes or their sex, which the scene may leave open."""
-    return as_worn(test) is not None or (isinstance(test, tree.Is) and is_sexed(test.words))
+    """Return whether a test is for people's clothes, their sex or what they do, which the scene may leave open."""
+    if isinstance(test, tree.Is):
+        return is_sexed(test.words) or (WAITING not in test.words and any(x.endswith("ing") for x in test.words))
+    return as_worn(test) is not None
 
 
 def _open_words(view: View, phrase: tree.Phrase) -> str:
     """Return what a phrase says about people's clothes or sex in its tests ("wearing red"); empty if it says nothing about them."""
-    return next((words_after_noun(view, as_worn(t) or t) for t in phrase.tests if _may_be_open(t)), "")
+    tests = _with_activity_as_test(view, phrase).tests
+    return next((words_after_noun(view, as_worn(t) or t) for t in tests if _may_be_open(t)), "")
 
 
 def with_plural_sex(description: tree.Description) -> tree.Description:
@@ -81,6 +94,27 @@ def with_plural_sex(description: tree.Description) -> tree.Description:
     return tree.Description(
         tuple(replace(p, words=tuple(english.plural(x) if x in SEXES else x for x in p.words)) for p in description.phrases)
     )
+
+
+def undecided_sex(view: View, description: tree.Description) -> str:
+    """Return the statement that several people may be "the woman"; empty if only one may be, or if the scene states who is."""
+    sexed = next((x for p in description.phrases for x in p.words if x in SEXES), "")
+    people = find(view, description) if sexed else []
+    if len(people) < 2 or any(stated_sex(t) is not None for t in people):
+        return ""
+    return f"I cannot tell which of {len(people)} people is {english.article(sexed)}"
+
+
+def without_open_sex(view: View, description: tree.Description) -> tree.Description:
+    """Return "the person at the stall" for "the lady at the stall" if the scene does not state the sex of whom it matches."""
+
+    def unsexed(phrase: tree.Phrase) -> tree.Phrase:
+        people = find_phrase(view, phrase) if SEXES.keys() & set(phrase.words) else []
+        if all(stated_sex(t) is not None for t in people):
+            return phrase
+        return replace(phrase, words=tuple("person" if x in SEXES else x for x in phrase.words))
+
+    return tree.Description(tuple(map(unsexed, description.phrases)))
 
 
 def _sexed_noun(phrase: tree.Phrase) -> str:

@@ -76,9 +76,13 @@ def answer_about_occupants(
     if occupants and asked in _DRIVERS | _ANYONE | _DRIVING:
         yes = "yes, " if is_yes_no else ""
         return known_answer(f"{yes}there is {english.article(coloured_name(occupants[0]))} {position_words(occupants[0])}")
+    asks_for_driver = asked in _DRIVERS | _ANYONE | _DRIVING
     stated = {str(v.attributes.get("driver", "")).lower() for v in vehicles}
     named = definite_as_asked(view, vehicle)
-    if asked in _DRIVERS and stated and stated <= ABSENT_VALUES - {""}:
+    if asks_for_driver and stated == {"yes"}:
+        yes = "yes, " if is_yes_no else ""
+        return known_answer(f"{yes}{named} {'have drivers' if len(vehicles) > 1 else 'has a driver'}")
+    if asks_for_driver and stated and stated <= ABSENT_VALUES - {""}:
         no = "no, " if is_yes_no else ""
         return known_answer(f"{no}{named} {'have no drivers' if len(vehicles) > 1 else 'has no driver'}")
     return unknown_answer(f"I cannot see who is in {'it' if vehicle.phrases[0].words == ('it',) else named}")

@@ -44,7 +44,14 @@ from scope_ptz.perception.ground_truth.thing_facts import (
     has_form_in,
     is_sexed,
 )
-from scope_ptz.perception.ground_truth.thing_search import find, holds, is_place, split_after_numbered_noun, without_waiting
+from scope_ptz.perception.ground_truth.thing_search import (
+    find,
+    find_references,
+    holds,
+    is_place,
+    split_after_numbered_noun,
+    without_waiting,
+)
 from scope_ptz.perception.ground_truth.view import Thing, View
 from scope_ptz.perception.ground_truth.vocabulary import are_opposites, canonical_form
 
@@ -83,6 +90,8 @@ def answer_yes_no(view: View, question: tree.YesNo) -> TruthAnswer:
     missing = next((m for m in (missing_reference(view, t) for t in tests) if m is not None), None)
     if missing is not None:
         return unknown_answer(f"I cannot tell: {none_in_view(view, missing)}")
+    if all("boom gate" in t.concepts for t in things) and (arms := _answer_about_compound(view, question, subject, tests)):
+        return arms
     answers = [_all_hold([holds(view, t, test) for test in tests]) for t in things]
     if True not in answers and False not in answers:
         return _answer_about_compound(view, question, subject, tests) or _cannot_tell_whether(view, subject, tests)
@@ -200,7 +209,7 @@ def missing_reference(view: View, test: tree.Test) -> tree.Description | None:
             return missing_reference(view, inner)
         case tree.Relation(kind=kind, other=other) if kind != "on":
             others: tuple[tree.Description, ...] = (other,)
-        case tree.Measured(other=other):
+        case tree.Measured(other=other) | tree.Order(reference=tree.Description() as other):
             others = (other,)
         case tree.Any(tests=tests):
             return next((m for m in (missing_reference(view, t) for t in tests) if m is not None), None)
@@ -208,7 +217,7 @@ def missing_reference(view: View, test: tree.Test) -> tree.Description | None:
             others = (first, second)
         case _:
             others = ()
-    return next((o for o in others if not find(view, o)), None)
+    return next((o for o in others if not find_references(view, o)), None)
 
 
 def _is_unknown_place(view: View, test: tree.Test) -> bool:

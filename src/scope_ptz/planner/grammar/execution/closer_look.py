@@ -75,7 +75,9 @@ class CloserLook(RunState):
             return result
         if not is_too_small(result):
             return result
-        thing = thing or _object_with_text(result) or thing_of(question)
+        if not thing and (bearer := _object_with_text(result)):
+            thing, question = bearer, _about_bearer(question, bearer)
+        thing = thing or thing_of(question)
         if not thing:
             return result
         if not self.may_go_closer:
@@ -142,15 +144,17 @@ class CloserLook(RunState):
             zoomed = yield from self._perception_call("zoom_to_object", description=thing)
             if zoomed is None or not zoomed.get("found"):
                 continue
-            question = reading_question(without_position(thing))
-            if parse_question(question) is None:
-                question = reading_question(thing.split()[-1])  # perception does not know all words of the name
+            asked = without_position(thing)
+            if parse_question(reading_question(asked)) is None:
+                asked = f"{thing.split()[-1]} in the middle"  # where the camera points now: the words of the name form no phrase
+            question = reading_question(asked)
             reply = yield from self._answer_from_here(question, thing)
             yield from self._put_back(start)
             if reply is not None:
                 seen.append(thing if thing.split()[-1].isdigit() else f"the {thing}")  # "dock number 8"
                 text = closer_views_in(reply["answer"])[0]
-                text = re.sub(re.escape(thing), thing.replace("\\", r"\\"), text, count=1, flags=re.IGNORECASE)  # "the CCTV sign"
+                names = "|".join(re.escape(name) for name in (thing, asked, english.letters(asked)))
+                text = re.sub(names, thing.replace("\\", r"\\"), text, count=1, flags=re.IGNORECASE)  # "the CCTV sign"
                 answers.append({**reply, "answer": text[:1].upper() + text[1:]})
         if not seen:
             return before
@@ -158,7 +162,7 @@ class CloserLook(RunState):
         if not any(reply.get("known", True) for reply in answers):
             text = f"{zoomed_in}, but that did not help, so I put the camera back. {before['answer']}"
             return {**before, "answer": text}
-        skipped = f"; I did not go closer to the other {closer.more}" if closer.more else ""
+        skipped = f"; I did not go closer to {closer.more} more" if closer.more else ""
         report = f"{zoomed_in}, and put the camera back afterwards{skipped}."
         beginning = f"{before['answer']} {report}" if before.get("known", True) else report
         return {**before, "known": True, "answer": _joined([beginning, *(reply["answer"] for reply in answers)])}
@@ -189,6 +193,11 @@ def _object_with_text(result: dict[str, Any]) -> str:
     """
     match = _OBJECT_WITH_TEXT.search(str(result.get("answer", "")))
     return match[1] if match else ""
+
+
+def _about_bearer(question: str, bearer: str) -> str:
+    """Return a question about the text on a thing ("the sign on the statue") for the thing that bears it ("the plinth")."""
+    return reading_question(bearer) if isinstance(parse_question(question), Read) else question
 
 
 _OBJECT_WITH_TEXT = re.compile(r"^The .+ (?:is|are|may be) on the (.+), but it is too small to read")
