@@ -15,7 +15,6 @@ from scope_ptz.planner.grammar.binding.asked_things import asked_thing, two_thin
 from scope_ptz.planner.grammar.binding.narrowing import are_exclusive
 from scope_ptz.planner.grammar.binding.noun_heads import (
     bare_noun,
-    has_one,
     head_noun,
     may_name_person,
     names_animal,
@@ -165,7 +164,7 @@ def _foci_of_answer(question: str, answer: str) -> list[Focus]:
     thing = asked_thing(question)
     if thing is None:  # "is there a dog or a fox?"
         both = two_things(question)
-        if len(both) > 1 and has_one(both[1]):  # "is there a red car or a blue one?"
+        if len(both) > 1 and bare_noun(both[0]) == bare_noun(both[1]):  # "is there a red car or a blue one?"
             return [Focus(noun(bare_noun(both[0]), 2), None, "query_answer", question)]
         single = single_thing(answer) if len(both) > 1 else ""
         return [Focus(single, 1, "query_answer", question)] if single else []
