@@ -44,7 +44,7 @@ from scope_ptz.perception.ground_truth.thing_facts import (
     is_sexed,
     sex_fits,
 )
-from scope_ptz.perception.ground_truth.view import Thing, View
+from scope_ptz.perception.ground_truth.view import Thing, View, trades_of
 from scope_ptz.perception.ground_truth.vocabulary import FILLER_WORDS, IGNORABLE_WORDS
 
 INSIDE = frozenset({"in", "inside", "inside of", "inside the"})
@@ -324,6 +324,8 @@ def _has(view: View, thing: Thing, what: tree.Description) -> bool:
 def has_relation(view: View, thing: Thing, kind: tree.RelationKind, other: tree.Description, preposition: str = "") -> bool:
     """Return whether a thing has a relation to any thing that matches ``other``."""
     others = find_excluding_wearers(view.with_surfaces, other)
+    if kind == "on" and not preposition and thing in others and trades_of(thing.sighting.instance):
+        return True  # "the chemist's shop" is the chemist
     if preposition in INSIDE and "person" in thing.concepts and _names_vehicle(view, other):
         return any(view.belongs(thing.id, o.id) for o in others)  # a lorry driver is not always in the lorry
     if _is_only_colour(other) and "person" in thing.concepts:
