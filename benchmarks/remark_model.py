@@ -23,10 +23,10 @@ from scipy.sparse import csr_matrix
 from scipy.special import expit
 from tests.planner.lots import FILES, Row, planned, rows, verdict
 
-from scope_ptz.planner.grammar.parsing import remark_model
-from scope_ptz.planner.grammar.parsing.remark_model.features import features_of
-from scope_ptz.planner.grammar.parsing.remark_model.model import WEIGHTS_FILE, RemarkModel
-from scope_ptz.planner.grammar.parsing.remark_model.segments import segments_of
+from scope_ptz.planner.grammar.parsing import remark_detection
+from scope_ptz.planner.grammar.parsing.remark_detection.features import features_of
+from scope_ptz.planner.grammar.parsing.remark_detection.model import WEIGHTS_FILE, RemarkModel
+from scope_ptz.planner.grammar.parsing.remark_detection.segments import segments_of
 from scope_ptz.planner.grammar.parsing.rewording.plain_text import written_out
 
 _MAX_SEGMENTS = 8  # instructions with more segments are not used, because each segment is left out in turn
@@ -61,7 +61,7 @@ def main() -> None:
         print(f"{threshold:<16}{labels[found].mean():>10.1%}{labels[found].sum() / labels.sum():>10.1%}")
     if options.write:
         model = _trained(examples)
-        path = Path(next(iter(remark_model.__path__))) / WEIGHTS_FILE
+        path = Path(next(iter(remark_detection.__path__))) / WEIGHTS_FILE
         weights = {name: round(weight, 2) for name, weight in sorted(model.weights.items()) if abs(weight) >= _MIN_WEIGHT}
         path.write_text(json.dumps({"bias": round(model.bias, 2), "weights": weights}, indent=0, ensure_ascii=False) + "\n")
         print(f"{len(weights)} weights written to {path}")

@@ -8,10 +8,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from scope_ptz.planner.grammar.parsing.remark_model.features import features_of
-from scope_ptz.planner.grammar.parsing.remark_model.model import RemarkModel, remark_model
-from scope_ptz.planner.grammar.parsing.remark_model.segments import segments_of
-from scope_ptz.planner.grammar.parsing.remark_model.versions import versions_without_remarks
+from scope_ptz.planner.grammar.parsing.remark_detection.features import features_of
+from scope_ptz.planner.grammar.parsing.remark_detection.model import RemarkModel, remark_model
+from scope_ptz.planner.grammar.parsing.remark_detection.segments import segments_of
+from scope_ptz.planner.grammar.parsing.remark_detection.versions import versions_without_remarks
 from scope_ptz.planner.plan import plan
 
 PRESETS = ("yard", "main-gate")

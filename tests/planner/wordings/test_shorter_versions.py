@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from scope_ptz.planner.grammar.consistency.withdrawals import withdrawing_statement
-from scope_ptz.planner.grammar.parsing.rewording.shorter_versions import is_remark, shorter_versions
+from scope_ptz.planner.grammar.parsing.remark_detection.shorter_versions import is_remark, shorter_versions
 from scope_ptz.planner.plan import Plan, plan
 from tests.planner.wordings.test_wordings_of_speech import PRESETS, shown
 

@@ -8,7 +8,7 @@ from scope_ptz.builtin_names import GRAMMAR
 from scope_ptz.errors import PlannerError
 from scope_ptz.planner.base import CallTools, Decision, Finish, Planner, State, ToolCall, ToolOutcome
 from scope_ptz.planner.confirmations import yes_or_no
-from scope_ptz.planner.grammar.binding.continuations import commands_of
+from scope_ptz.planner.grammar.binding.earlier_moves.continuations import commands_of
 from scope_ptz.planner.grammar.binding.small_talk import impossible_request
 from scope_ptz.planner.grammar.binding.understand import Understanding, understand
 from scope_ptz.planner.grammar.consistency.check import NOT_UNDERSTOOD

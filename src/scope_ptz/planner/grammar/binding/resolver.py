@@ -10,27 +10,23 @@ from scope_ptz.english import listing
 from scope_ptz.english.numerals import ORDINALS
 from scope_ptz.planner.grammar import instruction_tree as ast
 from scope_ptz.planner.grammar.binding.asked_things import asked_thing
-from scope_ptz.planner.grammar.binding.commands import standing_command
-from scope_ptz.planner.grammar.binding.continuations import commands_of
+from scope_ptz.planner.grammar.binding.counting_steps import CountingSteps
 from scope_ptz.planner.grammar.binding.earlier_comparison import (
-    EarlierCount,
-    counts_of_tour,
-    counts_to_add,
     earlier_winners,
-    last_two_presets,
     left_view_won,
 )
+from scope_ptz.planner.grammar.binding.earlier_moves.commands import standing_command
+from scope_ptz.planner.grammar.binding.earlier_moves.continuations import commands_of
 from scope_ptz.planner.grammar.binding.elliptic_questions import asks_colour, completed_question, item_of
 from scope_ptz.planner.grammar.binding.embedded_questions import direct_question
-from scope_ptz.planner.grammar.binding.focus import OF_THEM, PLURAL, foci_of, referent, things_to_add
-from scope_ptz.planner.grammar.binding.followup_steps import FollowUpSteps
+from scope_ptz.planner.grammar.binding.focus import OF_THEM, PLURAL, foci_of, referent
 from scope_ptz.planner.grammar.binding.followups import is_other
 from scope_ptz.planner.grammar.binding.names import UnresolvedError
 from scope_ptz.planner.grammar.binding.narrowing import without_contradicted
 from scope_ptz.planner.grammar.binding.noun_heads import has_one, names_several
 from scope_ptz.planner.grammar.binding.offtopic import is_about_the_scene
 from scope_ptz.planner.grammar.binding.plain_questions import plain_question
-from scope_ptz.planner.grammar.binding.preset_matching import match_exactly, match_preset
+from scope_ptz.planner.grammar.binding.preset_matching import match_preset
 from scope_ptz.planner.grammar.binding.question_pronouns import (
     is_impersonal,
     names_other_one,
@@ -53,7 +49,6 @@ from scope_ptz.planner.grammar.binding.question_text import (
 from scope_ptz.planner.grammar.binding.unknowable import why_not_about_the_scene
 from scope_ptz.planner.grammar.binding.whereabouts import report_of_last_following, thing_that_went
 from scope_ptz.planner.grammar.execution.answer_sentences import noun
-from scope_ptz.planner.grammar.execution.comparison_sentences import presets_of_rank
 from scope_ptz.planner.grammar.parsing.looks.closeups import FILLS_THE_VIEW
 from scope_ptz.planner.grammar.parsing.loops import FOLLOWS_FOR_A_TIME
 
@@ -87,19 +82,15 @@ _MOVES = (ast.Move, ast.Home, ast.GoToPreset, ast.GoThere, ast.Back, ast.ZoomTo,
 
 
 @dataclass(slots=True)
-class Resolver(FollowUpSteps):
+class Resolver(CountingSteps):
     """Resolves the names in the steps of one instruction.
 
     Attributes:
-        has_compared: Whether an earlier step compares presets.
-        has_counted: Whether an earlier step counts something.
         must_not_move: Whether the camera must not move.
         has_moved: Whether an earlier step of the instruction moves the camera.
         has_looked: Whether an earlier step looks for something, so that "if so" refers to what it found.
     """
 
-    has_compared: bool = False
-    has_counted: bool = False
     has_moved: bool = False
     has_looked: bool = False
     must_not_move: bool = False
@@ -197,20 +188,6 @@ class Resolver(FollowUpSteps):
             raise UnresolvedError("Where is 'there'? Please name a preset.")
         return [ast.GoToPreset(ast.PresetRef(self.preset, explicit=True))]
 
-    def _preset_with(self, comparison: str) -> str:
-        """Return the preset at which the last turn that counted found more, or fewer, things than at the others.
-
-        Raises:
-            UnresolvedError: Nothing was counted at several presets, or the counts are equal.
-        """
-        counts = {count.preset: count.number for count in counts_of_tour(self.earlier_counts)}
-        ranked = presets_of_rank(counts, "more" if comparison == "more" else "fewer", 1)
-        if not ranked:
-            raise UnresolvedError("What shall I count to tell which is busier: vehicles or people?")
-        if len(ranked) > 1:
-            raise UnresolvedError(f"Which one do you mean? {listing(ranked, 'and')} show the same number.")
-        return ranked[0]
-
     def _snap(self, step: ast.Snap) -> Sequence[ast.Step]:
         if step.of is None:
             return [step]
@@ -221,39 +198,6 @@ class Resolver(FollowUpSteps):
     def _count(self, step: ast.Count) -> Sequence[ast.Step]:
         self.has_counted = True
         return [replace(step, things=tuple(self.thing(t) for t in step.things), view=self._view(step.view))]
-
-    def _tally(self, part: ast.Tally) -> ast.Tally:
-        place = self.place(part.place) if part.place else None
-        return ast.Tally(self.thing(part.thing), place, self._view(part.view))
-
-    def _tallies(self, parts: Sequence[ast.Tally]) -> tuple[ast.Tally, ...]:
-        """Return the parts of a calculation, with a part that is counted everywhere split into one part for each preset."""
-        every = [
-            replace(part, place=place, everywhere=False)
-            for part in parts
-            for place in (self._places(()) if part.everywhere else (part.place,))
-        ]
-        return tuple(self._tally(part) for part in every)
-
-    def _total(self, step: ast.Total) -> Sequence[ast.Step]:
-        self.has_counted = True
-        if not step.parts:
-            counted = things_to_add(self.conversation)
-            if len(counted) > 1:
-                return [ast.Total(tuple(ast.Tally(ast.Thing(description), None, self._view(None)) for description in counted))]
-            if at_presets := counts_to_add(self.earlier_counts):
-                parts = [ast.Tally(ast.Thing(c.description), ast.PresetRef(c.preset, explicit=True)) for c in at_presets]
-                return [ast.Total(tuple(parts), tuple(count.number for count in at_presets))]
-            raise UnresolvedError("What shall I add up? Please name the things to count.")
-        return [ast.Total(self._tallies(step.parts))]
-
-    def _difference(self, step: ast.Difference) -> Sequence[ast.Step]:
-        self.has_counted = True
-        return [ast.Difference(self._tally(step.first), self._tally(step.second))]
-
-    def _rankcounts(self, step: ast.RankCounts) -> Sequence[ast.Step]:
-        self.has_counted = True
-        return [replace(step, parts=self._tallies(step.parts))]
 
     def _ask(self, step: ast.Ask) -> Sequence[ast.Step]:
         if self.has_counted and is_answered_by_counts(step.question):
@@ -322,17 +266,6 @@ class Resolver(FollowUpSteps):
     def _referent_of_ones(self, pronoun: str) -> str:  # noqa: ARG002 - has the signature of a referent
         last = self.foci[-1] if self.foci and not self.antecedent else None
         return last.whole if last is not None and last.whole and last.number == 0 else self.topic  # the taxis, if none is white
-
-    def _earlier_comparison(self, comparison: ast.Comparison) -> ast.WhichPreset | ast.Compare:
-        """Return the comparison of what was counted last: two things in one view, or the same thing at several presets."""
-        if len(two_things := things_to_add(self.conversation)) == 2:
-            return ast.Compare(ast.Thing(two_things[0]), ast.Thing(two_things[1]), comparison)
-        if tour := counts_of_tour(self.earlier_counts):
-            return _with_counts(ast.WhichPreset(ast.Thing(tour[0].description), comparison), tour)
-        if self.earlier_counts and (two := last_two_presets(self.earlier_counts)) is not None:
-            places = tuple(ast.PresetRef(name, explicit=True) for name in two)
-            return ast.WhichPreset(ast.Thing(self.earlier_counts[-1].description), comparison, places)
-        raise UnresolvedError("Which presets shall I compare, and what shall I count there?")
 
     def _question_and_place(self, question: str) -> tuple[str, list[ast.Step]]:
         """Split a question that ends with a preset ("... at gate?") into the question and a step that goes to the preset."""
@@ -440,40 +373,6 @@ class Resolver(FollowUpSteps):
             return [ast.GoToPreset(self.place(step.places[0]))]
         return self._atplaces(ast.AtPlaces(step.places, tuple(body)))
 
-    def _whichpreset(self, step: ast.WhichPreset) -> Sequence[ast.Step]:
-        self.has_compared = True
-        thing = self.thing(step.thing)
-        counted = [count for count in self.earlier_counts if count.description == thing.text]
-        if step.of_two and not step.places and counted and (two := last_two_presets(counted)) is not None:
-            return [replace(step, thing=thing, places=tuple(ast.PresetRef(name, explicit=True) for name in two))]
-        tour = counts_of_tour(self.earlier_counts)
-        is_last = bool(tour) and not any(turn.exchanges for turn in self.conversation[tour[0].turn + 1 :])
-        if not step.places and is_last and tour[0].description == thing.text:
-            is_every = self.presets is None or {count.preset for count in tour} == set(self.presets)
-            if is_every and not (step.any_of or step.yes_no):
-                return [_with_counts(replace(step, thing=thing), tour)]
-        return [replace(step, thing=thing, places=self._places(step.places))]
-
-    def _firstwith(self, step: ast.FirstWith) -> Sequence[ast.Step]:
-        self.has_compared = True
-        places = self._places(step.places)
-        return [replace(step, thing=self.thing(step.thing), places=places[::-1] if step.last else places)]
-
-    def _compare(self, step: ast.Compare) -> Sequence[ast.Step]:
-        if step.second_place is not None:
-            thing, place = self.thing(step.first), self.place(step.second_place)
-            return [replace(step, first=thing, second=thing, second_place=place)]
-        places = [None if step.yes_no else match_exactly(thing.text, self.presets or ()) for thing in (step.first, step.second)]
-        if all(places) and not self.topic:
-            raise UnresolvedError(f"What shall I count at {places[0]} and {places[1]}?")
-        if all(places):
-            return self._whichpreset(ast.WhichPreset(ast.Thing(), step.comparison, tuple(ast.PresetRef(p or "") for p in places)))
-        first, second = self.thing(step.first), self.thing(step.second)
-        return [replace(step, first=first, second=second, view=self._view(step.view))]
-
-    def _beforeafter(self, step: ast.BeforeAfter) -> Sequence[ast.Step]:
-        return [replace(step, thing=self.thing(step.thing), moves=self.bind(step.moves))]
-
     def condition(self, condition: ast.Condition) -> ast.Condition:
         """Return a condition with its names resolved."""
         if isinstance(condition, ast.Seen):
@@ -513,16 +412,6 @@ def _answered_by(condition: ast.Condition, count: ast.Count) -> ast.Condition | 
         ast.Quantity(): ast.Answered(), ast.Quantity("==", 0): ast.Negated(ast.Answered())
     }  # fmt: skip
     return answers.get(condition.quantity)
-
-
-def _with_counts(step: ast.WhichPreset, counts: Sequence[EarlierCount]) -> ast.WhichPreset:
-    """Return a comparison that uses the counts of an earlier turn, so that the camera need not move."""
-    return replace(
-        step,
-        places=tuple(ast.PresetRef(count.preset, explicit=True) for count in counts),
-        numbers=tuple(count.number for count in counts),
-        lower_bounds=frozenset(count.preset for count in counts if not count.complete),
-    )
 
 
 def _target(step: ast.Step) -> str:

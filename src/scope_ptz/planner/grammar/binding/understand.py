@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from scope_ptz.english.grammar.numbers import NUMBER_WORDS
 from scope_ptz.planner.grammar import instruction_tree as ast
 from scope_ptz.planner.grammar.answerable import answerable_questions, is_whole_question
-from scope_ptz.planner.grammar.binding.continuations import NOTHING_DONE, continuation_of
+from scope_ptz.planner.grammar.binding.earlier_moves.continuations import NOTHING_DONE, continuation_of
 from scope_ptz.planner.grammar.binding.followups import followup_of, question_about_side, question_about_topic
 from scope_ptz.planner.grammar.binding.names import UnresolvedError
 from scope_ptz.planner.grammar.binding.offtopic import REFUSAL, is_harmful
@@ -34,9 +34,9 @@ from scope_ptz.planner.grammar.consistency.check import (
 )
 from scope_ptz.planner.grammar.lexing.lexer import lexemes_of
 from scope_ptz.planner.grammar.parsing.instruction_parser import MAX_CHARS, Parsed, parse
-from scope_ptz.planner.grammar.parsing.remark_model.versions import versions_without_remarks
+from scope_ptz.planner.grammar.parsing.remark_detection.shorter_versions import shorter_versions
+from scope_ptz.planner.grammar.parsing.remark_detection.versions import versions_without_remarks
 from scope_ptz.planner.grammar.parsing.rewording.plain_text import written_out
-from scope_ptz.planner.grammar.parsing.rewording.shorter_versions import shorter_versions
 from scope_ptz.planner.grammar.parsing.rewording.withdrawn_parts import takes_back_unclearly
 
 if TYPE_CHECKING:

@@ -6,10 +6,10 @@ from collections.abc import Sequence
 
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 from scope_ptz.planner.grammar.parsing.parts.clause import DIRECTIONS
+from scope_ptz.planner.grammar.parsing.parts.compound_nouns import with_compound_nouns
 from scope_ptz.planner.grammar.parsing.parts.noun_phrases import is_noun
 from scope_ptz.planner.grammar.parsing.parts.patterns import match_start, search
 from scope_ptz.planner.grammar.parsing.parts.scopes import SECONDS
-from scope_ptz.planner.grammar.parsing.rewording.compound_nouns import with_compound_nouns
 from scope_ptz.planner.grammar.parsing.rewording.preset_lists import with_presets_reworded
 from scope_ptz.planner.grammar.parsing.rewording.single_words import reworded_in_context
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 
 from scope_ptz.planner.grammar.lexing.spelling import corrected_noun, with_whole_ending
+from scope_ptz.planner.grammar.parsing.remark_detection.surrounding_remarks import without_remarks
 from scope_ptz.planner.grammar.parsing.rewording.rewordings import reworded_text, rewordings
-from scope_ptz.planner.grammar.parsing.rewording.surrounding_remarks import without_remarks
 from scope_ptz.planner.grammar.parsing.rewording.text_conditions import CONDITIONS
 from scope_ptz.planner.grammar.parsing.rewording.text_counts import COUNTS
 from scope_ptz.planner.grammar.parsing.rewording.text_courtesy import COURTESIES

@@ -6,7 +6,7 @@ import re
 from collections.abc import Sequence
 
 from scope_ptz.english.text_forms import listing
-from scope_ptz.planner.grammar.parsing.rewording.shorter_versions import is_remark
+from scope_ptz.planner.grammar.parsing.remark_detection.shorter_versions import is_remark
 
 _COMPARED = re.compile(
     r"\b(?P<how>more|most|fewer|fewest|less|least|greater number of|larger number of|higher number of|highest number of)\b"

@@ -7,8 +7,8 @@ from functools import lru_cache
 
 from scope_ptz.english import is_plural, plural
 from scope_ptz.planner.grammar.lexing.preset_names import short_names
+from scope_ptz.planner.grammar.parsing.remark_detection.surrounding_remarks import asks_for_something
 from scope_ptz.planner.grammar.parsing.rewording.preset_comparisons import with_presets_compared
-from scope_ptz.planner.grammar.parsing.rewording.surrounding_remarks import asks_for_something
 from scope_ptz.planner.grammar.parsing.rewording.text_counts import NO_TOPIC
 
 _STATES = (

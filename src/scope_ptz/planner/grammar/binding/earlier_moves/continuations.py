@@ -8,8 +8,8 @@ from itertools import takewhile
 from typing import TYPE_CHECKING
 
 from scope_ptz.planner.grammar import instruction_tree as ast
-from scope_ptz.planner.grammar.binding.commands import Command, Continuation, correctable_command, standing_command
-from scope_ptz.planner.grammar.binding.corrections import (
+from scope_ptz.planner.grammar.binding.earlier_moves.commands import Command, Continuation, correctable_command, standing_command
+from scope_ptz.planner.grammar.binding.earlier_moves.corrections import (
     asks_for_another_move,
     corrected_text,
     duration_in_answer,
@@ -20,8 +20,7 @@ from scope_ptz.planner.grammar.binding.corrections import (
     thing_beside_rejected,
     turns_the_other_way,
 )
-from scope_ptz.planner.grammar.binding.focus import foci_of
-from scope_ptz.planner.grammar.binding.further_moves import (
+from scope_ptz.planner.grammar.binding.earlier_moves.further_moves import (
     measured_by_last,
     more,
     next_thing,
@@ -29,11 +28,12 @@ from scope_ptz.planner.grammar.binding.further_moves import (
     share_of_turn,
     share_of_zoom,
 )
-from scope_ptz.planner.grammar.binding.overshoots import move_after_overshoot
-from scope_ptz.planner.grammar.binding.repeated_returns import continued_return
-from scope_ptz.planner.grammar.binding.single_moves import SingleMove, single_move, towards
+from scope_ptz.planner.grammar.binding.earlier_moves.overshoots import move_after_overshoot
+from scope_ptz.planner.grammar.binding.earlier_moves.repeated_returns import continued_return
+from scope_ptz.planner.grammar.binding.earlier_moves.single_moves import SingleMove, single_move, towards
+from scope_ptz.planner.grammar.binding.earlier_moves.zoom_factors import factor_for_last_zoom
+from scope_ptz.planner.grammar.binding.focus import foci_of
 from scope_ptz.planner.grammar.binding.small_talk import NEVER_MIND
-from scope_ptz.planner.grammar.binding.zoom_factors import factor_for_last_zoom
 from scope_ptz.planner.grammar.execution.camera_history import Effect
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme, lexemes_of
 from scope_ptz.planner.grammar.parsing.instruction_parser import parse

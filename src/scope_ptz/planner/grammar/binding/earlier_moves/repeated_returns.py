@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from scope_ptz.planner.grammar.binding.commands import Command, Continuation, standing_command
+from scope_ptz.planner.grammar.binding.earlier_moves.commands import Command, Continuation, standing_command
 from scope_ptz.planner.grammar.execution.camera_history import position_history
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 from scope_ptz.geometry import wrap_pan_deg
 from scope_ptz.planner.grammar import instruction_tree as ast
-from scope_ptz.planner.grammar.binding.commands import Command, Continuation
-from scope_ptz.planner.grammar.binding.single_moves import SingleMove, axis_of_way, single_move, towards
+from scope_ptz.planner.grammar.binding.earlier_moves.commands import Command, Continuation
+from scope_ptz.planner.grammar.binding.earlier_moves.single_moves import SingleMove, axis_of_way, single_move, towards
 from scope_ptz.planner.grammar.execution.camera_history import ANGLE_TOLERANCE_DEG, ZOOM_TOLERANCE, pose_after
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme, lexemes_of
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match

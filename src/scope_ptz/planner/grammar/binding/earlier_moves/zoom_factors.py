@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from scope_ptz.planner.grammar import instruction_tree as ast
-from scope_ptz.planner.grammar.binding.commands import Command, Continuation
-from scope_ptz.planner.grammar.binding.single_moves import SingleMove, single_move
+from scope_ptz.planner.grammar.binding.earlier_moves.commands import Command, Continuation
+from scope_ptz.planner.grammar.binding.earlier_moves.single_moves import SingleMove, single_move
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 from scope_ptz.planner.grammar.parsing.looks.closeups import FILLS_THE_VIEW
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match

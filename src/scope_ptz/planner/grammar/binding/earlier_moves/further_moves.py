@@ -6,8 +6,8 @@ import re
 from collections.abc import Sequence
 
 from scope_ptz.planner.grammar import instruction_tree as ast
-from scope_ptz.planner.grammar.binding.commands import Command
-from scope_ptz.planner.grammar.binding.single_moves import SingleMove, single_move, towards
+from scope_ptz.planner.grammar.binding.earlier_moves.commands import Command
+from scope_ptz.planner.grammar.binding.earlier_moves.single_moves import SingleMove, single_move, towards
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 from scope_ptz.planner.grammar.parsing.instruction_parser import parse
 from scope_ptz.planner.grammar.parsing.parts.noun_phrases import is_noun_phrase

@@ -7,12 +7,12 @@ from collections.abc import Iterator, Sequence
 
 from scope_ptz.planner.grammar.lexing.lexer import lexemes_of
 from scope_ptz.planner.grammar.parsing.parts.clause import VERBS
-from scope_ptz.planner.grammar.parsing.remark_model.features import features_of
-from scope_ptz.planner.grammar.parsing.remark_model.model import remark_model
-from scope_ptz.planner.grammar.parsing.remark_model.segments import Segment, segments_of
-from scope_ptz.planner.grammar.parsing.rewording.remark_forms import SUBJECT
-from scope_ptz.planner.grammar.parsing.rewording.shorter_versions import UNFINISHED, is_amount, opens_request, refers_back
-from scope_ptz.planner.grammar.parsing.rewording.surrounding_remarks import AT_AN_END, WITHDRAWAL
+from scope_ptz.planner.grammar.parsing.remark_detection.features import features_of
+from scope_ptz.planner.grammar.parsing.remark_detection.model import remark_model
+from scope_ptz.planner.grammar.parsing.remark_detection.remark_forms import SUBJECT
+from scope_ptz.planner.grammar.parsing.remark_detection.segments import Segment, segments_of
+from scope_ptz.planner.grammar.parsing.remark_detection.shorter_versions import UNFINISHED, is_amount, opens_request, refers_back
+from scope_ptz.planner.grammar.parsing.remark_detection.surrounding_remarks import AT_AN_END, WITHDRAWAL
 
 _MAX_CHARS = 500  # longer texts are not shortened: each version is parsed again
 _MAX_SEGMENTS = 12

@@ -11,7 +11,7 @@ from scope_ptz.planner.grammar.lexing.lexer import lexemes_of
 from scope_ptz.planner.grammar.parsing.parts.clause import VERBS
 from scope_ptz.planner.grammar.parsing.parts.questions import is_question
 from scope_ptz.planner.grammar.parsing.parts.statements import is_comment, is_statement
-from scope_ptz.planner.grammar.parsing.remark_model.segments import Segment
+from scope_ptz.planner.grammar.parsing.remark_detection.segments import Segment
 
 _WORD = re.compile(r"[a-z']+|\d+")
 _MAX_LENGTH = 8  # longer segments count as this many words

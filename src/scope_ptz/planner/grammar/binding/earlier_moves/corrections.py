@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from scope_ptz.planner.grammar import instruction_tree as ast
-from scope_ptz.planner.grammar.binding.commands import Command
+from scope_ptz.planner.grammar.binding.earlier_moves.commands import Command
+from scope_ptz.planner.grammar.binding.earlier_moves.single_moves import SingleMove, axis_of_way, single_move, towards
 from scope_ptz.planner.grammar.binding.focus import foci_of
 from scope_ptz.planner.grammar.binding.noun_heads import head_noun, names_several
-from scope_ptz.planner.grammar.binding.single_moves import SingleMove, axis_of_way, single_move, towards
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 from scope_ptz.planner.grammar.parsing.instruction_parser import parse
 from scope_ptz.planner.grammar.parsing.parts.noun_phrases import is_noun_phrase

@@ -7,12 +7,19 @@ from collections.abc import Iterator
 
 from scope_ptz.planner.grammar.lexing.lexer import lexemes_of
 from scope_ptz.planner.grammar.parsing.parts.clause import VERBS
+from scope_ptz.planner.grammar.parsing.parts.compound_nouns import with_compound_nouns
 from scope_ptz.planner.grammar.parsing.parts.courtesy import bare_clause, is_polite
 from scope_ptz.planner.grammar.parsing.parts.questions import is_question
 from scope_ptz.planner.grammar.parsing.parts.statements import is_comment, is_statement
-from scope_ptz.planner.grammar.parsing.rewording.compound_nouns import with_compound_nouns
-from scope_ptz.planner.grammar.parsing.rewording.remark_forms import EXCLAMATION, EXEMPT, NOUN_SUBJECT, REFUSAL, REPORT, SUBJECT
-from scope_ptz.planner.grammar.parsing.rewording.surrounding_remarks import (
+from scope_ptz.planner.grammar.parsing.remark_detection.remark_forms import (
+    EXCLAMATION,
+    EXEMPT,
+    NOUN_SUBJECT,
+    REFUSAL,
+    REPORT,
+    SUBJECT,
+)
+from scope_ptz.planner.grammar.parsing.remark_detection.surrounding_remarks import (
     AMOUNT,
     DURATION,
     FOLLOWING,
