@@ -120,3 +120,37 @@ def test_a_picture_without_moving_is_taken_of_the_current_view(forbidden: str) -
 def test_every_pattern_compiles(patterns: tuple) -> None:  # type: ignore[type-arg]
     for rewording in rewordings(patterns):
         assert re.compile(rewording.pattern, re.IGNORECASE)
+
+
+@pytest.mark.parametrize(
+    "instruction",
+    [
+        "pan left 20, retract that",
+        "pan left 20, belay that",
+        "pan left 20, strike that",
+        "pan left 20, disregard",
+        "pan left 20, you shouldn't",
+        "pan left 20, assuming Dave signs it off",
+        "pan left 20, Sarah objected",
+        "pan left 20, we need permission for that",
+        "pan left 20, the camera stays where it is",
+        "pan left 20, nobody asked for it",
+        "pan left 20, my finger slipped",
+        "dave, pan left 20, that was for the other camera",
+        "imagine i said pan left 20, funny",
+        "pan left 20? bad idea",
+        "zoom in, i think we had better leave it",
+        "pan left 20, i refuse",
+        "pan left 20, abort",
+        "pan left 20, that is not what i want",
+        "pan left 20, nobody told you to",
+        "pan left 20, the camera must stay put",
+        "pan left 20, we shouldn't",
+        "zoom in on the van, he meant the bus",
+        "pan left 20, the client has withdrawn the request",
+        "pan left 20, that order is void",
+        "pan left 20, I am only testing what you would say",
+    ],
+)
+def test_statements_that_take_a_command_back_in_any_words_move_nothing(instruction: str) -> None:
+    assert not plan(instruction, ("gate", "yard")).calls

@@ -23,6 +23,21 @@ _STATEMENTS = (
         rf"(?:enough|plenty|too much|fine|right|better)\b",
         re.IGNORECASE,
     ),
+    re.compile(
+        r"(?:^|[,.;?!–-] |\b(?:but|and) )(?:"
+        r"(?:i|we) (?:refuse|object)\b|(?:abort|retract|belay|disregard|strike)(?: that| it| this)?\W*$"
+        r"|(?:that|this|it) (?:is|was)(?:n['’]t| not) what (?:i|we) (?:want|need|ask|mean)"
+        r"|(?:that|this|it) (?:is|was) (?:meant )?for (?:the other|another)\b"
+        r"|(?:nobody|no one) (?:told|asked|wants|needs)(?: (?:you|me|us))?(?: to| for| it| that)?\W*$"
+        r"|the camera (?:must|should|has to|is to) (?:stay|remain|be left)\b|the camera stays\b"
+        r"|(?:we|you|i) (?:should|must|ought|need)(?:n['’]t| not)\W*$|(?:he|she|they) meant\b"
+        r"|(?:that|this|the) (?:order|request|command|instruction) (?:is|was|has been)\b|[^,.;?!]*\bwithdr[ae]w\w*"
+        r"|(?:just |only )?(?:imagine|pretend|suppose|assume) (?:i|we|that|you)\b|(?:bad|terrible|stupid) idea\W*$"
+        r"|[^,.;?!]*\b(?:permission for (?:it|that|this)|finger slipped|better (?:leave|not))\b"
+        r"|i(?: am|['’]m) (?:only|just) (?:testing|joking|kidding)\b)"
+        r"|[,;] assuming\b",
+        re.IGNORECASE,
+    ),
 )
 
 

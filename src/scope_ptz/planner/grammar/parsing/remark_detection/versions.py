@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 
 from scope_ptz.planner.grammar.lexing.lexer import lexemes_of
 from scope_ptz.planner.grammar.parsing.parts.clause import VERBS
+from scope_ptz.planner.grammar.parsing.parts.statements import is_statement
 from scope_ptz.planner.grammar.parsing.remark_detection.features import features_of
 from scope_ptz.planner.grammar.parsing.remark_detection.model import remark_model
 from scope_ptz.planner.grammar.parsing.remark_detection.remark_forms import SUBJECT
@@ -19,6 +20,7 @@ _MAX_SEGMENTS = 12
 _MAX_VERSIONS = 8
 _MIN_LOG_ODDS = 0.0
 _MIN_WORDS = 2
+_MIN_STATEMENT_WORDS = 4  # shorter statements may be about what was said before them: "pan left 20, Sarah objected"
 
 _NEGATED_STATEMENT = re.compile(
     rf"^(?:{SUBJECT})\b(?! (?:don['’]?t|do not|didn['’]?t) (?:want|need|mean))"
@@ -31,12 +33,13 @@ _EVENT = re.compile(r"^(?:before|after) (?:i|we|he|she|they|it|the|my|our|someon
 """The beginning of a clause about a time: "before the boss comes"."""
 
 _TAKING_BACK = re.compile(
-    rf"{AT_AN_END}|\b(?:{WITHDRAWAL}|jokes?|called (?:it|that|this) off|(?:never|not) to|nobody (?:wants|needs)"
+    rf"{AT_AN_END}|\b(?:that|this|for it)\W*$|\bfor the other\b|\bbetter\b|\bstays?\b"
+    rf"|\b(?:{WITHDRAWAL}|jokes?|called (?:it|that|this) off|(?:never|not) to|nobody (?:wants|needs)"
     r"|(?:it|that|this) (?:should|must|ought|has to|needs)"
     r"|(?:is|are|was)(?:n['’]t| not) (?:needed|necessary))\b",
     re.IGNORECASE,
 )
-"""Words with which a statement may take something back, or ask for something else: "it should be lower", "that was a joke"."""
+"""Words with which a statement may take something back, or ask for something else: "it should be lower", "belay that"."""
 
 _BINDING = re.compile(
     r"\b(?:don['’]?t|do not|not|no|never|nor|without|instead|unless|if|when(?! you (?:get|have|can))|until|till|otherwise|else"
@@ -59,7 +62,7 @@ def versions_without_remarks(text: str, presets: tuple[str, ...]) -> Iterator[st
     log_odds = {
         index: remark_model().log_odds(features_of(segments, index, presets))
         for index, segment in enumerate(segments)
-        if not _is_binding(segment.text, presets)
+        if not (_is_binding(segment.text, presets) or _is_short_comment(segments, index))
     }
     remarks = sorted((index for index, value in log_odds.items() if value > _MIN_LOG_ODDS), key=lambda index: -log_odds[index])
     left_out = [remarks[:size] for size in range(1, len(remarks) + 1)] + [[index] for index in remarks[1:]]
@@ -81,6 +84,12 @@ def _is_binding(text: str, presets: tuple[str, ...]) -> bool:
     elif (event := _EVENT.match(text)) is not None:
         text = text[event.end() :]
     return _BINDING.search(text) is not None
+
+
+def _is_short_comment(segments: Sequence[Segment], index: int) -> bool:
+    """Return whether a segment is a short statement after others, so that it may be about them: "Sarah objected"."""
+    text = segments[index].text
+    return index > 0 and len(text.split()) < _MIN_STATEMENT_WORDS and is_statement(lexemes_of(text))
 
 
 def _without(segments: Sequence[Segment], left_out: frozenset[int], presets: tuple[str, ...]) -> str | None:
