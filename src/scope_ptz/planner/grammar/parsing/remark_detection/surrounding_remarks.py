@@ -58,7 +58,7 @@ WITHDRAWAL = (
     r"|changed|decided|limits?"
     r"|forbidden|allowed|banned|private|secret|called off|don't|do not|didn't want|already"
     r"|refus\w+|abort\w*|retract\w*|revok\w+|disregard|belay|strike that|stays? put|objects?|objected|permission|approval"
-    r"|(?:should|must|need|ought|could|would)n't|not what (?:i|we)|told (?:you|me|us|him|her) (?:not |never )?to"
+    r"|(?:we|you|i) (?:should|must|need|ought)n't|not what (?:i|we)|told (?:you|me|us|him|her) (?:not |never )?to"
     r"|nobody (?:told|asked|said)|(?:he|she|they|i|we) meant|assuming|provided|providing|subject to|bad idea|typo|slipped"
     r"|imagine|pretend|suppose|supposing|hypothetical"
 )
