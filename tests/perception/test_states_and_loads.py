@@ -91,3 +91,11 @@ async def test_one_without_an_earlier_sentence_is_not_understood(question: str) 
     truth = GroundTruthPerception(lambda _: yard.StandInScene(), lambda *_: yard.truth())  # type: ignore[arg-type, return-value]
     with pytest.raises(NotUnderstoodError, match="'one'"):
         await truth.query(yard.frame(), question)
+
+
+def test_what_somebody_carries_is_not_what_they_wear() -> None:
+    view = yard_with({"worker-01": {"category": "cyclist", "name": "cyclist", "attributes": {"carrying": "clipboard", "vest": "orange"}}})
+    assert answer(view, parse_question("is the cyclist carrying anything?")).text == "Yes, the cyclist is carrying a clipboard."
+    assert answer(view, parse_question("is the cyclist wearing anything?")).text == "Yes, the cyclist is wearing an orange vest."
+    bare = yard_with({"worker-01": {"category": "cyclist", "name": "cyclist", "attributes": {"carrying": "clipboard"}}})
+    assert not answer(bare, parse_question("is the cyclist wearing anything?")).known

@@ -148,7 +148,11 @@ class GroundTruthPerception(Perception):
         from scope_ptz.english.grammar.questions.question_parser import parse_description
         from scope_ptz.english.grammar.questions.recognition import is_description
         from scope_ptz.perception.ground_truth.answers.restating import unmodelled_place
-        from scope_ptz.perception.ground_truth.answers.text_regions import find_sign_regions, find_text_regions
+        from scope_ptz.perception.ground_truth.answers.text_regions import (
+            find_sign_regions,
+            find_text_regions,
+            may_be_lettering,
+        )
         from scope_ptz.perception.ground_truth.answers.undecided import undecided_reason
         from scope_ptz.perception.ground_truth.thing_search import find
         from scope_ptz.perception.ground_truth.unclear_things import unclear_matches
@@ -162,6 +166,8 @@ class GroundTruthPerception(Perception):
             return regions, True
         if not things and (signs := find_sign_regions(view, parsed)):
             return signs, False
+        if not things and may_be_lettering(view, parsed):
+            return things, False
         if reason := undecided_reason(view, parsed):
             if not things:
                 raise NotUnderstoodError(f"{reason}.")

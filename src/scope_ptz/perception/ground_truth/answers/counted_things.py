@@ -16,7 +16,7 @@ from scope_ptz.perception.ground_truth.answers.restating import (
     unmodelled_background,
     unmodelled_place,
 )
-from scope_ptz.perception.ground_truth.answers.text_regions import find_sign_regions
+from scope_ptz.perception.ground_truth.answers.text_regions import find_sign_regions, may_be_lettering
 from scope_ptz.perception.ground_truth.answers.thing_names import (
     TruthAnswer,
     coloured_name,
@@ -76,6 +76,8 @@ def answer_exists(view: View, question: tree.Exists) -> TruthAnswer:
         return unknown_answer(
             f"there is {seen}, but I cannot tell whether it is {one}" if only_sex_is_open and len(people) == 1 else whether
         )
+    if not matches and may_be_lettering(view, what):
+        return _answer_lettering_exists(view, question) or unknown_answer(whether)
     if question.least != 1 or question.most is not None:
         if possible := unclear_matches(view, what):
             return _answer_unclear_bounds(view, question, len(matches), len(possible))
@@ -91,6 +93,17 @@ def answer_exists(view: View, question: tree.Exists) -> TruthAnswer:
     if not matches:
         return known_answer(f"{'yes' if question.negated else 'no'}, {none_in_view(view, question.what)}")
     return known_answer(f"{'no' if question.negated else 'yes'}, {describe_matches(view, question.what, matches)}")
+
+
+def _answer_lettering_exists(view: View, question: tree.Exists) -> TruthAnswer | None:
+    """Answer whether there are signs that are no things of their own. Their number is a minimum; None if that decides nothing."""
+    plain = tree.Description(tuple(replace(p, amount=None) for p in question.what.phrases))
+    total = len(find_sign_regions(view, plain))
+    if not total or (question.most is None and total < question.least) or (question.most is not None and total <= question.most):
+        return None
+    yes = question.most is None and not question.negated
+    signs = noun_phrase(view, question.what, plural=total != 1)
+    return known_answer(f"{'yes' if yes else 'no'}, there {is_or_are(total)} at least {total} {signs}")
 
 
 def _answer_unclear_bounds(view: View, question: tree.Exists, total: int, unclear: int) -> TruthAnswer:
@@ -161,6 +174,8 @@ def answer_count(view: View, question: tree.Count) -> TruthAnswer:
         return known_answer(
             f"{least} {predicate_words(view, tests, len(signs))}" if tests else f"there {is_or_are(len(signs))} {least}"
         )
+    if not total and may_be_lettering(view, description):
+        return unknown_answer(how_many)
     is_open = any(
         holds(view, t, test) is None
         for t in find(view, question.what)
