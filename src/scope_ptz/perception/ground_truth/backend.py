@@ -147,7 +147,7 @@ class GroundTruthPerception(Perception):
         """Return the things or texts that match a description, and whether there can be no others in view."""
         from scope_ptz.english.grammar.questions.question_parser import parse_description
         from scope_ptz.english.grammar.questions.recognition import is_description
-        from scope_ptz.perception.ground_truth.answers.restating import unmodelled_place
+        from scope_ptz.perception.ground_truth.answers.restating import place_without_outside, unmodelled_place
         from scope_ptz.perception.ground_truth.answers.text_regions import (
             find_sign_regions,
             find_text_regions,
@@ -172,6 +172,8 @@ class GroundTruthPerception(Perception):
             if not things:
                 raise NotUnderstoodError(f"{reason}.")
             return things, False
+        if not things and (place := place_without_outside(view, parsed)):
+            raise NotUnderstoodError(f"I cannot tell what is outside the {place}.")
         if not things and (place := unmodelled_place(view, parsed)):
             raise NotUnderstoodError(f"I cannot tell what is on the {place}.")
         if not things and not is_description(description):

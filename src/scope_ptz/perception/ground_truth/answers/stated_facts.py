@@ -140,7 +140,9 @@ def _is_bare_price(row: str) -> bool:
     return bool(_PRICE.search(row)) and set(re.findall(r"[a-z]+", row.lower())) <= _UNITS
 
 
-_UNITS = frozenset({"a", "per", "each", "the", "for", "kilo", "kg", "g", "lb", "pound", "litre", "bunch", "bag", "box", "punnet", "piece"})
+_UNITS = frozenset(
+    {"a", "per", "each", "the", "for", "kilo", "kg", "g", "lb", "pound", "litre", "bunch", "bag", "box", "punnet", "piece"}
+)
 """Words beside a price that say for how much of the goods it is."""
 
 

@@ -45,6 +45,7 @@ from scope_ptz.perception.ground_truth.thing_facts import (
     is_sexed,
 )
 from scope_ptz.perception.ground_truth.thing_search import (
+    compound_categories,
     find,
     find_references,
     holds,
@@ -137,7 +138,7 @@ def _answer_about_compound(
     """Answer "is the barrier raised?" about the barrier arms in view, if no other barrier can be raised."""
     phrase = subject.phrases[0]
     noun = english.singular(phrase.words[-1])
-    for category in dict.fromkeys(t.category for t in view.things if t.category.startswith(f"{noun} ")):
+    for category in compound_categories(view, noun):
         compound = tree.Description((replace(phrase, words=(*phrase.words[:-1], *category.split())),))
         if any(_states(view, t, test) for t in find(view, compound) for test in tests):
             return answer_yes_no(view, tree.YesNo(compound, tests, question.scope))
