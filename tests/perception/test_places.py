@@ -101,7 +101,7 @@ def test_an_office_does_not_show_its_manager() -> None:
         ("how many people are outside the butcher?", "1 person is outside the butcher."),
     ],
 )
-def test_only_buildings_have_an_outside(question: str, expected: str) -> None:
+def test_a_road_and_a_site_have_no_outside(question: str, expected: str) -> None:
     assert answer(STREET, parse_question(question)).text == expected
 
 

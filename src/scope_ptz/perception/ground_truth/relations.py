@@ -30,7 +30,7 @@ BACKGROUND_CONCEPTS = frozenset({"surface", "sky"})
 BUILDING_CONCEPTS = frozenset({"building", "shop"})
 """Things with a front, before which people stand."""
 
-OUTSIDE_CONCEPTS = BUILDING_CONCEPTS | {"cabin", "gate", "door"}
+OUTSIDE_CONCEPTS = BUILDING_CONCEPTS | {"cabin", "gate", "door", "vehicle", "machine"}
 """Things outside which people are if they are near."""
 
 NEAR_M = 4.0  # maximum gap between things that are next to each other

@@ -3,7 +3,7 @@
 - Facts that the scene states ("in the left lane", "in an orange vest") take precedence over the spatial relations of ``relations``.
 - *at*: people are at a thing if they are at most 1 m from it.
 - *in* a vehicle or a machine: only people whom the scene models as part of it.
-- *outside* a building: near it, and not on or in it. Other things have no outside: nobody means "near" by "outside the road".
+- *outside* a building or a vehicle: near it, and not on or in it. Roads and sites have no outside that a picture shows.
 - *waiting at* a place: being there, and not walking, because a picture shows no more.
 - "*The* car on the left", if no car is in the left band of the frame, is the leftmost car in the left half.
 - *between*: the centre lies horizontally between the centres of two things, and the thing is not clearly in front of both or behind
@@ -381,7 +381,7 @@ def has_relation(view: View, thing: Thing, kind: tree.RelationKind, other: tree.
 
 
 def has_outside(view: View, place: tree.Description) -> bool:
-    """Return whether a picture shows what is outside a place: only that of a building, a door or a gate, and not of "the site"."""
+    """Return whether a picture shows what is outside a place: that of a building or a vehicle, and not that of "the site"."""
     spans = [p.words[start:end] for p in place.phrases for start, end in nouns_in(p.words, view.nouns)]
     concepts = [c for words in spans if (c := lexicon().concept(" ".join(words))) is not None]
     kinds = [lexicon().kinds(c) for c in concepts]
