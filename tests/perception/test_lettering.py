@@ -76,6 +76,36 @@ def test_the_signs_on_a_gantry_are_its_groups_of_texts() -> None:
     assert ask("how many signs are on the gantry?") == ("At least 2 signs are on the gantry.", True)
 
 
+@pytest.mark.parametrize(
+    ("question", "expected"),
+    [
+        ("are there any signs on the gantry?", ("Yes, there are at least 2 signs on the gantry.", True)),
+        ("is there a sign on the gantry?", ("Yes, there are at least 2 signs on the gantry.", True)),
+        ("are there no signs on the gantry?", ("No, there are at least 2 signs on the gantry.", True)),
+        ("are there at least three signs on the gantry?", ("I cannot tell whether there are any signs on the gantry.", False)),
+        ("are there any signs on the lorry?", ("No, there are no signs on the lorry in view.", True)),
+    ],
+)
+def test_the_signs_on_a_gantry_are_not_denied(question: str, expected: tuple[str, bool]) -> None:
+    assert ask(question) == expected
+
+
+@pytest.mark.parametrize(
+    "question",
+    [
+        "how many signs on the gantry say closed?",
+        "how many signs on the gantry are red?",
+        "how many signs on the gantry are broken?",
+        "how many speed limit signs are on the gantry?",
+        "is there a red sign on the gantry?",
+    ],
+)
+def test_nothing_but_their_number_is_known_of_the_signs_on_a_gantry(question: str) -> None:
+    text, is_known = ask(question)
+    assert text.startswith("I cannot tell ")
+    assert not is_known
+
+
 @pytest.mark.anyio
 async def test_a_search_finds_the_signs_on_a_gantry() -> None:
     truth, scene = lettered()

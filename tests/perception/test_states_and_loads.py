@@ -91,3 +91,59 @@ async def test_one_without_an_earlier_sentence_is_not_understood(question: str) 
     truth = GroundTruthPerception(lambda _: yard.StandInScene(), lambda *_: yard.truth())  # type: ignore[arg-type, return-value]
     with pytest.raises(NotUnderstoodError, match="'one'"):
         await truth.query(yard.frame(), question)
+
+
+def test_what_somebody_carries_is_not_what_they_wear() -> None:
+    cyclist = {"category": "cyclist", "name": "cyclist"}
+    view = yard_with({"worker-01": {**cyclist, "attributes": {"carrying": "clipboard", "vest": "orange"}}})
+    assert answer(view, parse_question("is the cyclist carrying anything?")).text == "Yes, the cyclist is carrying a clipboard."
+    assert answer(view, parse_question("is the cyclist wearing anything?")).text == "Yes, the cyclist is wearing an orange vest."
+    bare = yard_with({"worker-01": {**cyclist, "attributes": {"carrying": "clipboard"}}})
+    assert not answer(bare, parse_question("is the cyclist wearing anything?")).known
+
+
+@pytest.mark.parametrize(
+    ("question", "expected"),
+    [
+        ("is there a barrier in the middle?", "Yes, there is a red and white water-filled barrier in the middle."),
+        ("is there any barrier in the middle?", "Yes, there is a red and white water-filled barrier in the middle."),
+        ("is there a barrier next to the lorry?", "Yes, there is a red and white water-filled barrier in the middle."),
+        ("how many barriers are there?", "There are 3 barriers in view."),
+        ("are there at least 3 barriers?", "Yes, there are 3 barriers."),
+    ],
+)
+def test_any_barrier_may_be_an_arm_or_a_block(question: str, expected: str) -> None:
+    assert answer(VIEW, parse_question(question)).text == expected
+
+
+@pytest.mark.parametrize(
+    ("question", "expected"),
+    [
+        ("how many buses are empty?", "No buses are empty."),
+        ("is there an empty bus?", "No, there is no empty bus in view."),
+        ("how many full lorries are there?", "There are no full lorries in view."),
+    ],
+)
+def test_a_bus_shelter_is_no_bus(question: str, expected: str) -> None:
+    changes: dict[str, dict[str, Any]] = {
+        "cabin-01": {"category": "bus shelter", "name": "bus shelter", "attributes": {"state": "empty"}},
+        "lorry-01": {"category": "lorry park", "name": "lorry park", "attributes": {"state": "full"}},
+    }
+    assert answer(yard_with(changes), parse_question(question)).text == expected
+
+
+def test_the_woman_is_who_is_stated_to_be_one() -> None:
+    view = yard_with({"worker-01": {"name": "woman"}})
+    assert [t.id for t in find(view, parse_description("the woman"))] == ["worker-01"]
+    assert answer(view, parse_question("how far away is the woman?")).text == "The woman is about 35 m away."
+
+
+@pytest.mark.parametrize(
+    ("question", "expected"),
+    [
+        ("is there a man walking?", "There is a person walking, at the bottom, but I cannot tell whether it is a man."),
+        ("is there a man on the left?", "There is a person on the left, but I cannot tell whether it is a man."),
+    ],
+)
+def test_a_person_of_unknown_sex_is_described_once(question: str, expected: str) -> None:
+    assert answer(yard_with({}), parse_question(question)).text == expected

@@ -70,6 +70,19 @@ def test_a_price_above_its_goods_is_not_that_of_the_goods_above_it() -> None:
     assert not reply.known
 
 
+@pytest.mark.parametrize(
+    "rows",
+    [
+        ["PLUMS SOLD OUT", "LEEKS 0.95"],
+        ["FRESH PLUMS", "LEEKS 0.95", "BEANS 1.40"],
+        ["PLUMS", "LEEKS", "0.95", "BEANS 1.40"],
+    ],
+)
+def test_a_price_of_other_goods_is_not_that_of_the_row_above_them(rows: list[str]) -> None:
+    board = [text(row, 0.0, 1.0 - 0.2 * i) for i, row in enumerate(rows)]
+    assert not answer(view_with(*board), parse_question("how much are the plums?")).known
+
+
 def view_with(*texts: TextSighting) -> View:
     return read_view(replace(yard.truth(), texts=texts), yard.SCENE, 5.0)
 

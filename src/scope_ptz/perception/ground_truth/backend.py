@@ -147,8 +147,12 @@ class GroundTruthPerception(Perception):
         """Return the things or texts that match a description, and whether there can be no others in view."""
         from scope_ptz.english.grammar.questions.question_parser import parse_description
         from scope_ptz.english.grammar.questions.recognition import is_description
-        from scope_ptz.perception.ground_truth.answers.restating import unmodelled_place
-        from scope_ptz.perception.ground_truth.answers.text_regions import find_sign_regions, find_text_regions
+        from scope_ptz.perception.ground_truth.answers.restating import place_without_outside, unmodelled_place
+        from scope_ptz.perception.ground_truth.answers.text_regions import (
+            find_sign_regions,
+            find_text_regions,
+            may_be_lettering,
+        )
         from scope_ptz.perception.ground_truth.answers.undecided import undecided_reason
         from scope_ptz.perception.ground_truth.thing_search import find
         from scope_ptz.perception.ground_truth.unclear_things import unclear_matches
@@ -162,10 +166,14 @@ class GroundTruthPerception(Perception):
             return regions, True
         if not things and (signs := find_sign_regions(view, parsed)):
             return signs, False
+        if not things and may_be_lettering(view, parsed):
+            return things, False
         if reason := undecided_reason(view, parsed):
             if not things:
                 raise NotUnderstoodError(f"{reason}.")
             return things, False
+        if not things and (place := place_without_outside(view, parsed)):
+            raise NotUnderstoodError(f"I cannot tell what is outside the {place}.")
         if not things and (place := unmodelled_place(view, parsed)):
             raise NotUnderstoodError(f"I cannot tell what is on the {place}.")
         if not things and not is_description(description):

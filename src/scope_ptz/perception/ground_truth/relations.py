@@ -30,6 +30,9 @@ BACKGROUND_CONCEPTS = frozenset({"surface", "sky"})
 BUILDING_CONCEPTS = frozenset({"building", "shop"})
 """Things with a front, before which people stand."""
 
+OUTSIDE_CONCEPTS = BUILDING_CONCEPTS | {"cabin", "gate", "door", "vehicle", "machine"}
+"""Things outside which people are if they are near."""
+
 NEAR_M = 4.0  # maximum gap between things that are next to each other
 ON_TOLERANCE_M = 0.3  # tolerance when testing whether one thing stands on another
 FLAT_M = 0.5  # things lower than this are flat, such as a road
@@ -89,6 +92,11 @@ def relation_holds(view: View, a: Thing, kind: tree.RelationKind, b: Thing) -> b
             return a.gap_m(b) <= NEAR_M and (not is_part or a.gap_m(b) > 0)  # the signal beside a dock door, which is its part
         case "on":
             return view.belongs(a.id, b.id) or _rests_on(a, b)
+
+
+def is_outside(preposition: str) -> bool:
+    """Return whether a preposition is "outside", alone or with other words ("just outside", "outside of")."""
+    return "outside" in preposition.split()
 
 
 def _stands_before(a: Thing, b: Thing) -> bool:

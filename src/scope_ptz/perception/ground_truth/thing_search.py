@@ -3,6 +3,7 @@
 - Facts that the scene states ("in the left lane", "in an orange vest") take precedence over the spatial relations of ``relations``.
 - *at*: people are at a thing if they are at most 1 m from it.
 - *in* a vehicle or a machine: only people whom the scene models as part of it.
+- *outside* a building or a vehicle: near it, and not on or in it. Roads and sites have no outside that a picture shows.
 - *waiting at* a place: being there, and not walking, because a picture shows no more.
 - "*The* car on the left", if no car is in the left band of the frame, is the leftmost car in the left half.
 - *between*: the centre lies horizontally between the centres of two things, and the thing is not clearly in front of both or behind
@@ -26,15 +27,18 @@ from scope_ptz.perception.ground_truth.full_names import find_by_full_name
 from scope_ptz.perception.ground_truth.relations import (
     BACKGROUND_CONCEPTS,
     NEAR_M,
+    OUTSIDE_CONCEPTS,
     distance_to_corner,
     is_facing,
     is_in_region,
+    is_outside,
     rank_key,
     relation_holds,
     visible_pixels,
 )
 from scope_ptz.perception.ground_truth.stated_items import as_worn, is_open_item
 from scope_ptz.perception.ground_truth.thing_facts import (
+    SEXES,
     colour_of,
     facts,
     fits_noun,
@@ -43,6 +47,7 @@ from scope_ptz.perception.ground_truth.thing_facts import (
     has_text,
     is_sexed,
     sex_fits,
+    stated_sex,
 )
 from scope_ptz.perception.ground_truth.view import Thing, View, trades_of
 from scope_ptz.perception.ground_truth.vocabulary import FILLER_WORDS, IGNORABLE_WORDS
@@ -70,7 +75,8 @@ def find_excluding_wearers(view: View, description: tree.Description) -> list[Th
     for phrase in description.phrases:
         matches += [t for t in find_phrase(view, phrase) if t not in matches]
     if len(description.phrases) == 1:
-        return matches or _find_compound(view, description.phrases[0])
+        (phrase,) = description.phrases
+        return _most_likely(phrase, matches) or _find_compound(view, phrase)
     return sorted(matches, key=visible_pixels, reverse=True)
 
 
@@ -85,10 +91,28 @@ def _find_compound(view: View, phrase: tree.Phrase) -> list[Thing]:
     states = {*head[:-1], *after, *(x for t in phrase.tests if isinstance(t, tree.Is) for x in t.words)}
     if not states or states & english.COLOURS:
         return []
-    for category in dict.fromkeys(t.category for t in view.things if t.category.startswith(f"{english.singular(head[-1])} ")):
+    for category in compound_categories(view, english.singular(head[-1])):
         if matches := find_phrase(view, replace(phrase, words=(*head[:-1], *category.split(), *after))):
             return matches
     return []
+
+
+def compound_categories(view: View, noun: str) -> list[str]:
+    """Return the categories in view with a compound name that begins with a noun and means it: "barrier arm" for "barrier".
+
+    Most compounds do not: a bus shelter is no bus.
+    """
+    concept = lexicon().concept(noun)
+    return [
+        category
+        for category in dict.fromkeys(t.category for t in view.things if t.category.startswith(f"{noun} "))
+        if (noun, category) in _PARTS_FOR_WHOLES
+        or (concept is not None and (kind := lexicon().concept(category)) is not None and concept in lexicon().kinds(kind))
+    ]
+
+
+_PARTS_FOR_WHOLES = frozenset({("barrier", "barrier arm"), ("dock", "dock door")})
+"""Things that have the state of the whole, with the parts that scenes model: an open barrier is one with a raised arm."""
 
 
 def _find_wearers(view: View, phrase: tree.Phrase) -> list[Thing]:
@@ -124,6 +148,25 @@ def find_phrase(view: View, phrase: tree.Phrase) -> list[Thing]:
     tests = (*phrase.tests, *extra)
     matches = [t for t in core if all(holds(view, t, test) is True for test in tests)] or _one_on_side(view, phrase, core, tests)
     return _select_by_order(view, sorted(matches, key=visible_pixels, reverse=True), order, phrase)
+
+
+def _most_likely(phrase: tree.Phrase, matches: list[Thing]) -> list[Thing]:
+    """Return the matches that a phrase in the singular most likely means; all of them if none is more likely.
+
+    "The barrier" is the barrier arm, and not a block of concrete beside it. "The woman" is a person who is stated to be one, and
+    not one of unknown sex.
+    """
+    if len(matches) < 2 or not phrase.words or english.is_plural(phrase.words[-1]):
+        return matches
+    if SEXES.keys() & set(phrase.words):
+        return [t for t in matches if stated_sex(t) is not None] or matches
+    is_definite = phrase.article != "a" and len(phrase.words) == 1
+    return (is_definite and [t for t in matches if _is_barrier_arm_for(t, phrase.words[0])]) or matches
+
+
+def _is_barrier_arm_for(thing: Thing, noun: str) -> bool:
+    """Return whether a thing is the arm of what a noun names, a "barrier arm" for "barriers"."""
+    return "boom gate" in thing.concepts and thing.category.startswith(f"{english.singular(noun)} ")
 
 
 def _one_on_side(view: View, phrase: tree.Phrase, core: Sequence[Thing], tests: Sequence[tree.Test]) -> list[Thing]:
@@ -210,10 +253,7 @@ def _find_by_noun(view: View, noun: str, others: Sequence[str], include_parts: b
     """
     if lexicon().concept(noun) == "thing":
         return [t for t in view.things if _is_object(view, t) or (include_parts and not t.concepts & BACKGROUND_CONCEPTS)]
-    named = [t for t in view.things if fits_noun(view, t, noun)]
-    if not others and not english.is_plural(noun):
-        # "The barrier" is the barrier arm, if there is one, and not a block of concrete beside it.
-        named = [t for t in view.things if "boom gate" in t.concepts and t.category.startswith(f"{noun} ")] or named
+    named = [t for t in view.things if fits_noun(view, t, noun) or _is_barrier_arm_for(t, noun)]
     if lexicon().concept(noun) == "vehicle" and others and not any(_modifiers_hold(view, t, others) for t in named):
         return [t for t in view.things if "machine" in t.concepts]
     return named
@@ -324,6 +364,9 @@ def _has(view: View, thing: Thing, what: tree.Description) -> bool:
 def has_relation(view: View, thing: Thing, kind: tree.RelationKind, other: tree.Description, preposition: str = "") -> bool:
     """Return whether a thing has a relation to any thing that matches ``other``."""
     others = find_excluding_wearers(view.with_surfaces, other)
+    if is_outside(preposition):
+        fronts = [o for o in others if o is not thing and not relation_holds(view, thing, "on", o)]
+        return has_outside(view, other) and any(relation_holds(view, thing, "near", o) for o in fronts)
     if kind == "on" and not preposition and thing in others and trades_of(thing.sighting.instance):
         return True  # "the chemist's shop" is the chemist
     if preposition in INSIDE and "person" in thing.concepts and _names_vehicle(view, other):
@@ -335,6 +378,15 @@ def has_relation(view: View, thing: Thing, kind: tree.RelationKind, other: tree.
     if preposition == "at" and "person" in thing.concepts:  # people stand in front of a counter, not on it
         return any(relation_holds(view, thing, kind, o) or thing.gap_m(o) <= AT_M for o in others if o is not thing)
     return any(relation_holds(view, thing, kind, o) for o in others if o is not thing)
+
+
+def has_outside(view: View, place: tree.Description) -> bool:
+    """Return whether a picture shows what is outside a place: that of a building or a vehicle, and not that of "the site"."""
+    spans = [p.words[start:end] for p in place.phrases for start, end in nouns_in(p.words, view.nouns)]
+    concepts = [c for words in spans if (c := lexicon().concept(" ".join(words))) is not None]
+    kinds = [lexicon().kinds(c) for c in concepts]
+    things = find(view.with_surfaces, place) if spans else []
+    return any(x & OUTSIDE_CONCEPTS for x in (*kinds, *(t.concepts for t in things)))
 
 
 def _is_only_colour(other: tree.Description) -> bool:

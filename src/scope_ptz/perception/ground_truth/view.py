@@ -251,12 +251,12 @@ def head_of(name: str) -> str:
 
 
 def trades_of(instance: SceneInstance | SceneActor) -> frozenset[str]:
-    """Return the words for the owner of a shop or an office, which also name the place: "the butcher" for a butcher's shop."""
+    """Return the words for the owner of a shop or a surgery, which also name the place: "the butcher" for a butcher's shop."""
     match = _SHOP_OF_TRADE.match(instance.name.lower())
     return frozenset({match["trade"], f"{match['trade']}s", f"{match['trade']}'s"}) if match else frozenset()
 
 
-_SHOP_OF_TRADE = re.compile(r"(?P<trade>[a-z]+)'s (?:shop|office|surgery)\b")
+_SHOP_OF_TRADE = re.compile(r"(?P<trade>[a-z]+)'s (?:shop|surgery)\b")
 
 
 def concepts_of(instance: SceneInstance | SceneActor) -> frozenset[str]:

@@ -143,7 +143,7 @@ class NounPhrases:
             )
             for p in phrases[:-1]
         ]
-        return tree.Description(tuple(phrases))
+        return tree.Description(tuple(phrases), by_and=len(phrases) > 1 and bool(tokens_of(children, "AND")))
 
     def core(self, children: Children) -> Core:
         return Core(word for token in children for word in (_digits(token) if token.type == "NUM" else str(token)).split())

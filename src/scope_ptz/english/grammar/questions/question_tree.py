@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal
 
 RelationKind = Literal["left", "right", "above", "below", "front", "behind", "near", "on", "facing"]
@@ -34,6 +34,8 @@ class Description:
     """Phrases joined by "and" or "or". It matches everything that any of the phrases matches."""
 
     phrases: tuple[Phrase, ...]
+    by_and: bool = field(default=False, compare=False)
+    """Whether the phrases were joined by "and", for questions that ask whether there are all of them."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -27,6 +27,7 @@ from scope_ptz.perception.ground_truth.answers.ordered_things import answer_in_o
 from scope_ptz.perception.ground_truth.answers.scene import answer_describe, answer_happening
 from scope_ptz.perception.ground_truth.answers.stated_facts import answer_stated_fact
 from scope_ptz.perception.ground_truth.answers.thing_names import TruthAnswer, unknown_answer
+from scope_ptz.perception.ground_truth.answers.tradespeople import answer_about_tradesperson
 from scope_ptz.perception.ground_truth.answers.undecided import undecided_sex, without_open_sex
 from scope_ptz.perception.ground_truth.answers.unread_texts import unread_reason
 from scope_ptz.perception.ground_truth.answers.values import answer_attribute
@@ -40,6 +41,8 @@ def answer(view: View, question: tree.Question | None) -> TruthAnswer:
     """Return the answer to a parsed question; ``question`` is None if the parser did not understand the text."""
     if isinstance(question, tree.Exists | tree.Count | tree.What | tree.YesNo) and (reason := unread_reason(view, question)):
         return unknown_answer(reason)
+    if (person := answer_about_tradesperson(view, question)) is not None:
+        return person
     if isinstance(question, tree.Ask | tree.Where | tree.HowFar) and question.what is not None:
         if reason := undecided_sex(view, question.what):
             return unknown_answer(reason)

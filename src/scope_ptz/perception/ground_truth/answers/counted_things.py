@@ -16,7 +16,7 @@ from scope_ptz.perception.ground_truth.answers.restating import (
     unmodelled_background,
     unmodelled_place,
 )
-from scope_ptz.perception.ground_truth.answers.text_regions import find_sign_regions
+from scope_ptz.perception.ground_truth.answers.text_regions import find_sign_regions, may_be_lettering
 from scope_ptz.perception.ground_truth.answers.thing_names import (
     TruthAnswer,
     coloured_name,
@@ -54,11 +54,14 @@ def add_tests(description: tree.Description, tests: tuple[tree.Test, ...]) -> tr
 
 def answer_exists(view: View, question: tree.Exists) -> TruthAnswer:
     """Answer whether anything in view matches the description."""
+    question = replace(question, what=_without_preference(question.what))
     plural = is_plural(question.what)
     named = noun_phrase(view, question.what, plural)
     whether = f"I cannot tell whether there {'are any' if plural else 'is'} {named if plural else english.article(named)}"
     if unmodelled_background(view, question.what):
         return unknown_answer(whether)
+    if (not_every := _answer_not_every(view, question)) is not None:
+        return not_every
     what = question.what
     matches = find(view, what)
     if len(matches) > 1 or any(x in SEXES for p in what.phrases for x in p.words):
@@ -69,13 +72,12 @@ def answer_exists(view: View, question: tree.Exists) -> TruthAnswer:
     if not matches and (vehicle := asked_vehicle(view, question.what)) is not None:
         return answer_about_occupants(view, question.what, vehicle)
     if not matches and (people := undecided_people(view, what)):
-        only_sex_is_open = not plural and find(view, question.what) == people
-        one = english.article(question.what.phrases[0].words[-1])
-        person = without_open_sex(view, question.what)
-        seen = f"{english.article(noun_phrase(view, person))}, {position_words(people[0])}"
+        is_only_sex_open = not plural and find(view, question.what) == people
         return unknown_answer(
-            f"there is {seen}, but I cannot tell whether it is {one}" if only_sex_is_open and len(people) == 1 else whether
+            _person_of_open_sex(view, question.what, people[0]) if is_only_sex_open and len(people) == 1 else whether
         )
+    if not matches and may_be_lettering(view, what):
+        return _answer_lettering_exists(view, question) or unknown_answer(whether)
     if question.least != 1 or question.most is not None:
         if possible := unclear_matches(view, what):
             return _answer_unclear_bounds(view, question, len(matches), len(possible))
@@ -90,7 +92,58 @@ def answer_exists(view: View, question: tree.Exists) -> TruthAnswer:
         return unclear
     if not matches:
         return known_answer(f"{'yes' if question.negated else 'no'}, {none_in_view(view, question.what)}")
-    return known_answer(f"{'no' if question.negated else 'yes'}, {describe_matches(view, question.what, matches)}")
+    return known_answer(f"{'no' if question.negated else 'yes'}, {describe_matches(view, _decided(view, question.what), matches)}")
+
+
+def _person_of_open_sex(view: View, what: tree.Description, person: Thing) -> str:
+    """Describe the only person who may be "a man walking", and say that their sex is unknown."""
+    described = without_open_sex(view, what)
+    is_placed = any(isinstance(t, tree.Region) for p in described.phrases for t in p.tests)
+    seen = english.article(noun_phrase(view, described)) + ("" if is_placed else f", {position_words(person)}")
+    sexed = next((x for p in what.phrases for x in p.words if x in SEXES), noun_phrase(view, what))
+    return f"there is {seen}, but I cannot tell whether it is {english.article(sexed)}"
+
+
+def _decided(view: View, what: tree.Description) -> tree.Description:
+    """Return a description without those of several alternatives of which it is open whether anybody matches them."""
+    if len(what.phrases) == 1:
+        return what
+    parts = [with_plural_sex(tree.Description((p,))) for p in what.phrases]
+    return tree.Description(tuple(p.phrases[0] for p in parts if find(view, p) or not undecided_people(view, p)))
+
+
+def _without_preference(what: tree.Description) -> tree.Description:
+    """Return a description of any such thing ("any barrier"), and not of the one that "the barrier" most likely means."""
+    return replace(what, phrases=tuple(replace(p, article=p.article or "a") for p in what.phrases))
+
+
+def _answer_not_every(view: View, question: tree.Exists) -> TruthAnswer | None:
+    """Answer no to "is there a bus and a car?" if there are only cars; None if there is everything or nothing."""
+    parts = [tree.Description((p,)) for p in question.what.phrases]
+    present = [p for p in map(with_plural_sex, parts) if find(view, p)]
+    absent = [p for p in parts if with_plural_sex(p) not in present]
+    if not question.what.by_and or question.negated or not present or not absent:
+        return None
+    replies = [answer_exists(view, tree.Exists(p)) for p in absent]
+    if not all(reply.known for reply in replies):
+        return next(reply for reply in replies if not reply.known)
+    if not all(reply.text.startswith("No") for reply in replies):
+        return None  # "a beacon and a car", of which the beacon is a part of a van
+    missing = none_in_view(view, tree.Description(tuple(p for part in absent for p in part.phrases)))
+    seen = tree.Description(tuple(p for part in present for p in part.phrases))
+    first = _numbers_per_phrase(view, seen)[0]
+    return known_answer(f"no, {missing}, but there {is_or_are(first)} {_counts_per_phrase(view, seen)}")
+
+
+def _answer_lettering_exists(view: View, question: tree.Exists) -> TruthAnswer | None:
+    """Answer whether there are signs that are no things of their own. Their number is a minimum; None if that decides nothing."""
+    plain = tree.Description(tuple(replace(p, amount=None) for p in question.what.phrases))
+    total = len(find_sign_regions(view, plain))
+    if not total or (question.most is None and total < question.least) or (question.most is not None and total <= question.most):
+        return None
+    yes = question.most is None and not question.negated
+    signs = noun_phrase(view, question.what, plural=total != 1)
+    return known_answer(f"{'yes' if yes else 'no'}, there {is_or_are(total)} at least {total} {signs}")
 
 
 def _answer_unclear_bounds(view: View, question: tree.Exists, total: int, unclear: int) -> TruthAnswer:
@@ -130,7 +183,9 @@ def describe_matches(view: View, what: tree.Description, matches: list[Thing]) -
             else f"there is {names_with_positions(matches)}"
         )
     statement = f"there are {len(matches)} {noun_phrase(view, what, plural=True)}"
-    if len(what.phrases) > 1 and len(matches) > MAX_LISTED:
+    if len(what.phrases) > 1 and sum(counts := _numbers_per_phrase(view, what)) == len(matches):
+        statement = f"there {is_or_are(counts[0])} {_counts_per_phrase(view, what)}"
+    elif len(what.phrases) > 1 and len(matches) > MAX_LISTED:
         return f"there are {_counts_per_phrase(view, what)}"
     return (
         f"{statement}{f', {on}' if are_wearers else ':'} {names_with_positions(matches)}"
@@ -161,6 +216,8 @@ def answer_count(view: View, question: tree.Count) -> TruthAnswer:
         return known_answer(
             f"{least} {predicate_words(view, tests, len(signs))}" if tests else f"there {is_or_are(len(signs))} {least}"
         )
+    if not total and may_be_lettering(view, description):
+        return unknown_answer(how_many)
     is_open = any(
         holds(view, t, test) is None
         for t in find(view, question.what)
@@ -205,5 +262,10 @@ def _how_many_parts(view: View, question: tree.Count) -> str:
 def _counts_per_phrase(view: View, what: tree.Description, tests: tuple[tree.Test, ...] = ()) -> str:
     """Return the count for each noun phrase in a description: "4 cars and 1 van"."""
     parts = [tree.Description((p,)) for p in what.phrases]
-    counts = [(len(find(view, add_tests(p, tests))), p) for p in parts]
+    counts = zip(_numbers_per_phrase(view, what, tests), parts, strict=True)
     return english.listing([f"{n or 'no'} {noun_phrase(view, p, plural=n != 1)}" for n, p in counts])
+
+
+def _numbers_per_phrase(view: View, what: tree.Description, tests: tuple[tree.Test, ...] = ()) -> list[int]:
+    """Return how many things match each noun phrase in a description, together with additional tests."""
+    return [len(find(view, add_tests(tree.Description((p,)), tests))) for p in what.phrases]

@@ -9,9 +9,9 @@ from scope_ptz import english
 from scope_ptz.english.grammar.lexicon import lexicon, nouns_in, singular_phrase
 from scope_ptz.english.grammar.questions import question_tree as tree
 from scope_ptz.english.numerals import ORDINALS
-from scope_ptz.perception.ground_truth.relations import BACKGROUND_CONCEPTS
+from scope_ptz.perception.ground_truth.relations import BACKGROUND_CONCEPTS, is_outside
 from scope_ptz.perception.ground_truth.thing_facts import is_sexed
-from scope_ptz.perception.ground_truth.thing_search import split_after_noun
+from scope_ptz.perception.ground_truth.thing_search import has_outside, split_after_noun
 from scope_ptz.perception.ground_truth.view import View
 
 _PRONOUNS = {
@@ -165,7 +165,8 @@ def words_after_noun(view: View, test: tree.Test) -> str:
 def _plain_test_words(view: View, test: tree.Test) -> str:
     match test:
         case tree.Relation(kind=kind, other=other, preposition=preposition):
-            return f"{preposition if kind == 'on' and preposition else _RELATIONS[kind]} {phrase_as_asked(view, other)}"
+            shown = preposition if (kind == "on" and preposition) or is_outside(preposition) else _RELATIONS[kind]
+            return f"{shown} {phrase_as_asked(view, other)}"
         case tree.Within(metres=metres, other=other, beyond=beyond):
             reference = f" of {phrase_as_asked(view, other)}" if other else ""
             return f"{'more than' if beyond else 'within'} {metres:g} m{reference}"
@@ -284,7 +285,14 @@ def unmodelled_place(view: View, description: tree.Description) -> str:
     relations = [t for p in description.phrases for t in p.tests if isinstance(t, tree.Relation)]
     places = [t.other for t in relations if t.preposition != "of"]  # a pile of sand is a thing
     places += [p.order.reference for p in description.phrases if p.order is not None and p.order.reference is not None]
-    return next((words for place in (description, *places) if (words := unmodelled_background(view, place))), "")
+    background = next((words for place in (description, *places) if (words := unmodelled_background(view, place))), "")
+    return background or place_without_outside(view, description)
+
+
+def place_without_outside(view: View, description: tree.Description) -> str:
+    """Return the place in "cars outside the site" that has no outside which a picture shows; empty for buildings and others."""
+    relations = [t for p in description.phrases for t in p.tests if isinstance(t, tree.Relation) and is_outside(t.preposition)]
+    return next((noun_phrase(view, t.other) for t in relations if not has_outside(view, t.other)), "")
 
 
 def _background_in(view: View, phrase: tree.Phrase) -> str:

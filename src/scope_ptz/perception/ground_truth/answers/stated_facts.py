@@ -114,19 +114,36 @@ def _prices_on(group: _ThingTexts, goods: Sequence[frozenset[str]]) -> list[tupl
 
 
 def _labelled_prices(rows: Sequence[str]) -> Iterator[tuple[str, str]]:
-    """Yield the text and the price of each entry of a price list. A row without a price is the beginning of the next entry.
+    """Yield the text and the price of each entry of a price list.
 
-    A list that begins with a bare price has its prices above the goods, or is cut off, so it has no entries.
+    A price in a row without goods belongs to the row above, if that is the only row since the last price: of several rows, the
+    first may be a heading. A list that begins with such a price has its prices above the goods, or is cut off, so it has no
+    entries.
     """
-    if rows and _PRICE.fullmatch(rows[0].strip()):
+    if rows and _is_bare_price(rows[0]):
         return
-    beginning = ""
+    pending: list[str] = []
     for row in rows:
-        if prices := _PRICE.findall(row):
-            yield f"{beginning} {row}", prices[0]
-            beginning = ""
-        else:
-            beginning = f"{beginning} {row}"
+        prices = _PRICE.findall(row)
+        if not prices:
+            pending.append(row)
+            continue
+        if not _is_bare_price(row):
+            yield row, prices[0]
+        elif len(pending) == 1:
+            yield f"{pending[0]} {row}", prices[0]
+        pending = []
+
+
+def _is_bare_price(row: str) -> bool:
+    """Return whether a row has a price and no goods: "1.80 a kilo"."""
+    return bool(_PRICE.search(row)) and set(re.findall(r"[a-z]+", row.lower())) <= _UNITS
+
+
+_UNITS = frozenset(
+    {"a", "per", "each", "the", "for", "kilo", "kg", "g", "lb", "pound", "litre", "bunch", "bag", "box", "punnet", "piece"}
+)
+"""Words beside a price that say for how much of the goods it is."""
 
 
 def answer_time(view: View, question: tree.Time) -> TruthAnswer:

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from scope_ptz.english.grammar.lexicon import lexicon, nouns_in
 from scope_ptz.english.grammar.questions import question_tree as tree
 from scope_ptz.perception.base import Box
-from scope_ptz.perception.ground_truth.answers.legible_text import names_any_sign, names_plates, texts_on
+from scope_ptz.perception.ground_truth.answers.legible_text import names_plates, texts_on
 from scope_ptz.perception.ground_truth.answers.text_blocks import groups_of
-from scope_ptz.perception.ground_truth.thing_search import find
+from scope_ptz.perception.ground_truth.thing_search import find, find_phrase
 from scope_ptz.perception.ground_truth.view import View
 from scope_ptz.simulator.truth import TextSighting
 
@@ -44,11 +45,34 @@ def find_text_regions(view: View, description: tree.Description) -> list[TextReg
 
 
 def find_sign_regions(view: View, description: tree.Description) -> list[TextRegion]:
-    """Return the regions of "signs on the gantry", if its signs are no things of their own: those of the texts read together."""
-    owners = [t.other for p in description.phrases for t in p.tests if isinstance(t, tree.Relation) and t.kind == "on"]
-    if not owners or not all(names_any_sign(view, phrase) for phrase in description.phrases):
+    """Return the regions of "signs on the gantry", if its signs are no things of their own: those of the texts read together.
+
+    Nothing else is known about such signs, so a description with further conditions has none.
+    """
+    (phrase, *others) = description.phrases
+    is_plain = len(phrase.words) == 1 and lexicon().concept(phrase.words[0]) == "sign" and len(phrase.tests) == 1
+    if others or not is_plain or phrase.order is not None or phrase.ordinal is not None:
         return []
-    texts = [t for t in texts_on(view, find(view, owners[0]), plate=False) if t.cap_height_px >= _MIN_LOCATED_CAP_PX]
+    return _regions_of_lettering(view, phrase)
+
+
+def may_be_lettering(view: View, description: tree.Description) -> bool:
+    """Return whether a description may fit signs that are no things of their own, such as "red signs on the gantry"."""
+    return any(_names_signs(view, phrase) and _regions_of_lettering(view, phrase) for phrase in description.phrases)
+
+
+def _names_signs(view: View, phrase: tree.Phrase) -> bool:
+    spans = nouns_in(phrase.words, view.nouns)
+    concept = lexicon().concept(" ".join(phrase.words[slice(*spans[0])])) if spans else None
+    return concept is not None and "sign" in lexicon().kinds(concept)
+
+
+def _regions_of_lettering(view: View, phrase: tree.Phrase) -> list[TextRegion]:
+    """Return the regions of the texts on what a phrase says its signs are on; none if that has signs of its own."""
+    place = next((t for t in phrase.tests if isinstance(t, tree.Relation) and t.kind == "on"), None)
+    if place is None or find_phrase(view, tree.Phrase(("signs",), (place,))):
+        return []
+    texts = [t for t in texts_on(view, find(view, place.other), plate=False) if t.cap_height_px >= _MIN_LOCATED_CAP_PX]
     bearers = dict.fromkeys(t.text.parent for t in texts)
     groups = [group for bearer in bearers for group in groups_of([t for t in texts if t.text.parent == bearer])]
     return sorted((_region(group, "sign") for group in groups), key=lambda region: -region.box.width * region.box.height)

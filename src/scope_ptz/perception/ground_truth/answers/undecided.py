@@ -109,7 +109,7 @@ def without_open_sex(view: View, description: tree.Description) -> tree.Descript
     """Return "the person at the stall" for "the lady at the stall" if the scene does not state the sex of whom it matches."""
 
     def unsexed(phrase: tree.Phrase) -> tree.Phrase:
-        people = find_phrase(view, phrase) if SEXES.keys() & set(phrase.words) else []
+        people = find(view, tree.Description((phrase,))) if SEXES.keys() & set(phrase.words) else []
         if all(stated_sex(t) is not None for t in people):
             return phrase
         return replace(phrase, words=tuple("person" if x in SEXES else x for x in phrase.words))

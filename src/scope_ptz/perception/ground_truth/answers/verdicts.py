@@ -45,6 +45,7 @@ from scope_ptz.perception.ground_truth.thing_facts import (
     is_sexed,
 )
 from scope_ptz.perception.ground_truth.thing_search import (
+    compound_categories,
     find,
     find_references,
     holds,
@@ -137,7 +138,7 @@ def _answer_about_compound(
     """Answer "is the barrier raised?" about the barrier arms in view, if no other barrier can be raised."""
     phrase = subject.phrases[0]
     noun = english.singular(phrase.words[-1])
-    for category in dict.fromkeys(t.category for t in view.things if t.category.startswith(f"{noun} ")):
+    for category in compound_categories(view, noun):
         compound = tree.Description((replace(phrase, words=(*phrase.words[:-1], *category.split())),))
         if any(_states(view, t, test) for t in find(view, compound) for test in tests):
             return answer_yes_no(view, tree.YesNo(compound, tests, question.scope))
@@ -336,18 +337,21 @@ _SIDES_IN_NAMES = frozenset({"left", "right", "middle", "centre", "upper", "lowe
 
 
 def _answer_carried(view: View, subject: tree.Description, tests: tuple[tree.Test, ...], things: list[Thing]) -> TruthAnswer | None:
-    """Answer "is the forklift carrying anything?" with what it carries; None for other questions, and about several things."""
-    if len(things) != 1 or len(tests) != 1 or not isinstance(tests[0], tree.Has):
+    """Answer "is the forklift carrying anything?" with what it carries, and "is the worker wearing anything?" with the clothes.
+
+    None for other questions, and about several things.
+    """
+    if len(things) != 1 or len(tests) != 1 or not isinstance(test := tests[0], tree.Has) or test.sold:
         return None
-    if any(len(p.words) != 1 or p.words[0] not in _ANYBODY_WORDS for p in tests[0].what.phrases):
+    if any(len(p.words) != 1 or p.words[0] not in _ANYBODY_WORDS for p in test.what.phrases):
         return None
-    (thing,) = things
-    load = value_of(thing, ("carrying",))
-    if load is None:
-        return None
-    if load in ABSENT_VALUES:
-        return known_answer(f"no, {definite_phrase(view, subject)} is carrying nothing")
-    return known_answer(f"yes, {definite_phrase(view, subject)} is carrying {load}")
+    verb = "wearing" if test.worn else "carrying"
+    stated = value_of(things[0], (verb,))
+    if stated is None:
+        return unknown_answer(f"I cannot tell what {definite_phrase(view, subject)} is wearing") if test.worn else None
+    if stated in ABSENT_VALUES:
+        return known_answer(f"no, {definite_phrase(view, subject)} is {verb} nothing")
+    return known_answer(f"yes, {definite_phrase(view, subject)} is {verb} {stated}")
 
 
 def _all_words(total: int) -> str:
