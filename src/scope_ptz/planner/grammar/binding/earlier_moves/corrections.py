@@ -136,10 +136,18 @@ def duration_in_answer(lexemes: Sequence[Lexeme], last: Command) -> str | None:
         return None
     if not (match.has("editing") or match.has("for") or match.has("unit")):
         return None
+    if hesitates(lexemes):
+        return None  # "hang on 5 minutes", unlike "wait, 10 seconds"
     thing = last.steps[0].thing
     followed = f"the {thing.text}" if thing.text else thing.pronoun or "it"
     unit = "minutes" if match.has("unit") and match["unit"][0].has("MINUTES") else "seconds"
     return f"follow {followed} for {match['number'][0].value:g} {unit}"
+
+
+def hesitates(lexemes: Sequence[Lexeme]) -> bool:
+    """Return whether a text begins with a hesitation and no pause after it: "wait 10 seconds", unlike "wait, 10 seconds"."""
+    editing = match_start(_CORRECTING, lexemes)
+    return editing is not None and full_match(_HESITATION, lexemes[: editing.size]) is not None
 
 
 def rejects_for_other_way(lexemes: Sequence[Lexeme]) -> bool:
