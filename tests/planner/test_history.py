@@ -9,6 +9,7 @@ from scope_ptz.planner.base import PastTurn
 from tests.planner.stage import Stage
 
 FOUNTAIN = Pose(42, -6, 4)
+NOT_UNDERSTOOD = "The description 'exavator' is not understood."
 PLACES = {"gate": ("mast", Pose(5, 0, 1)), "highway": ("bridge", Pose(-30, -5, 2))}
 
 
@@ -291,9 +292,22 @@ def test_a_thing_is_followed_for_another_time_from_where_the_camera_is(said: str
 
 @pytest.mark.parametrize("said", ["no, the road roller", "no, road roller", "the road roller"])
 def test_the_verb_of_a_thing_that_was_not_understood_stays(said: str) -> None:
-    stage = Stage([True], fail={"zoom_to_object": 2})
+    stage = Stage([True], fail={"zoom_to_object": 2}, error=NOT_UNDERSTOOD)
     talk(stage, "zoom in on the exavator", said)
     assert stage.calls == [("zoom_to_object", {"description": "road roller"})]
+
+
+@pytest.mark.parametrize("said", ["a moment please", "no, typo", "no, bad idea", "no, the idea"])
+def test_a_remark_after_a_thing_that_was_not_understood_names_no_thing(said: str) -> None:
+    stage = Stage([True], fail={"zoom_to_object": 2}, error=NOT_UNDERSTOOD)
+    talk(stage, "zoom in on the exavator", said)
+    assert "zoom_to_object" not in [name for name, _ in stage.calls]
+
+
+def test_a_thing_after_another_failure_is_no_correction() -> None:
+    stage = Stage([True], fail={"zoom_to_object": 2})
+    talk(stage, "zoom in on the van", "no, road roller")
+    assert not stage.calls
 
 
 def test_the_rejected_thing_is_not_zoomed_in_on_again() -> None:
