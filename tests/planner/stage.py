@@ -17,7 +17,8 @@ _START = Pose()
 
 class Stage:
     """``looks``: what counting, asking, zooming to and tracking give back, in order; the last one is repeated. ``fail``: tools
-    that fail, with how often, and ``error``: what they report. ``lands``: the pose that zooming to a thing ends at; where the camera is, when not said.
+    that fail, with how often, and ``error``: what they report.
+    ``lands``: the pose that zooming to a thing ends at; where the camera is, when not said.
     ``after_tracking``: the same for following a thing, whose path then has these two poses.
     ``simulated``: whether the camera is simulated. ``places``: the viewpoint and pose of each preset; the first is home's. Without
     them, the camera has a single viewpoint, and presets and home are straight ahead."""

@@ -260,3 +260,9 @@ def test_a_thing_that_is_not_found_in_the_view_before_leaves_the_camera_there() 
     assert stage.pose == Pose()
     assert "so the camera is back at the view before" in reply
     assert "I went back" not in reply
+
+
+@pytest.mark.parametrize("wording", ["how many are there in total?", "how many altogether?"])
+def test_the_total_of_one_count_is_that_count(wording: str) -> None:
+    assert last_turn("how many cars are there?", wording, count=3)[0] == [(COUNT, "cars")]
+    assert not last_turn("how many vehicles are there?", "how many cars are there?", wording, count=3)[0]

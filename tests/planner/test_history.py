@@ -6,6 +6,7 @@ import pytest
 
 from scope_ptz.geometry import Pose
 from scope_ptz.planner.base import PastTurn
+from scope_ptz.planner.grammar.execution.move_sentences import offset_text
 from tests.planner.stage import Stage
 
 FOUNTAIN = Pose(42, -6, 4)
@@ -489,3 +490,31 @@ def test_a_command_that_was_dropped_can_still_be_undone() -> None:
     stage = Stage()
     talk(stage, "pan left 20", "no", "never mind", "undo")
     assert stage.pose == Pose(0, 0, 1)
+
+
+@pytest.mark.parametrize(
+    ("instructions", "axis"),
+    [
+        (("turn the camera", "what about left?"), "pan_deg"),
+        (("turn the camera", "left please"), "pan_deg"),
+        (("tilt the camera", "how about down?"), "tilt_deg"),
+    ],
+)
+def test_the_question_which_way_to_turn_is_answered(instructions: tuple[str, ...], axis: str) -> None:
+    stage = Stage()
+    talk(stage, *instructions)
+    assert [(name, list(arguments)) for name, arguments in stage.calls] == [("adjust_ptz", [axis])]
+    assert stage.calls[0][1][axis] < 0
+
+
+@pytest.mark.parametrize(
+    ("pose", "words"),
+    [
+        (Pose(0.3), "0.3 degrees to the right of"),
+        (Pose(0.3, 0, 2), "closer at"),
+        (Pose(20, -3), "20 degrees to the right of and 3 degrees below"),
+        (Pose(), "at"),
+    ],
+)
+def test_an_offset_names_what_differs(pose: Pose, words: str) -> None:
+    assert offset_text(Pose(), pose) == words

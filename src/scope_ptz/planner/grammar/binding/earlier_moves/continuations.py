@@ -58,6 +58,13 @@ _CORRECTION = re.compile(r"(?:no|nope|sorry|wait|oops|i meant|i mean|i said|make
 _ASKED = re.compile(r"By (?:how many degrees|what factor) shall I (?:pan|tilt|zoom) (left|right|up|down|in|out)\?")
 """The question about "the other way", which the next turn may answer with an amount."""
 
+_ASKED_WAY = re.compile(r"Shall I (?:turn|tilt) (left|up) or (right|down)\?")
+"""The question about a turn without a direction, which the next turn may answer with one."""
+
+_ANSWERED_WAY = (
+    "(FILLER|COMMA|AND|what_about|how_about|to|DET)* ((?P<left>LEFT)|(?P<right>RIGHT)|(?P<up>UP)|(?P<down>DOWN)) "
+    "(SIDE|FILLER|THEN|STOP|QUESTION|COMMA)*"
+)
 _ASKED_SHARE = re.compile(r"Shall I (?P<move>(?:pan|tilt) \w+ [\d.]+ degrees) instead, or [\d.]+ degrees more\?")
 """The question about "half of that", which the next turn may answer with "instead" or "more"."""
 
@@ -138,9 +145,9 @@ def _continuation(
     last = standing_command(commands)
     if (answered := _answer_about_other_way(lexemes, conversation[-1], last)) is not None:
         return Continuation(answered)
-    if (share := _ASKED_SHARE.fullmatch(conversation[-1].reply)) is not None and (
-        answer := full_match(_INSTEAD_OR_MORE, lexemes)
-    ):
+    if (turned := _answer_about_way(lexemes, conversation[-1])) is not None:
+        return Continuation(turned)
+    if (share := _ASKED_SHARE.fullmatch(conversation[-1].reply)) is not None and (answer := full_match(_INSTEAD_OR_MORE, lexemes)):
         axis, way = share["move"].split(" ")[:2]
         text = f"{axis} {way} {answer['number'][0].value:g} degrees" if answer.has("number") else share["move"]
         return Continuation(text, corrects=any(x.has("INSTEAD") for x in lexemes))
@@ -214,6 +221,14 @@ def _answer_about_other_way(lexemes: Sequence[Lexeme], turn: PastTurn, last: Com
         return None
     answered = size_in_answer(lexemes, towards(asked[1]), single_move(last.steps) if last is not None else None)
     return answered.text if answered is not None else None
+
+
+def _answer_about_way(lexemes: Sequence[Lexeme], turn: PastTurn) -> str | None:
+    """Return the move that answers "shall I turn left or right?": "what about left?"; None for others."""
+    asked, match = _ASKED_WAY.fullmatch(turn.reply), full_match(_ANSWERED_WAY, lexemes)
+    if asked is None or match is None:
+        return None
+    return next((towards(way).text for way in asked.groups() if match.has(way)), None)
 
 
 def _other_way(said: str, lexemes: Sequence[Lexeme], move: SingleMove) -> Continuation:

@@ -17,7 +17,10 @@ from scope_ptz.planner.grammar.parsing.parts.patterns import full_match
 if TYPE_CHECKING:
     from scope_ptz.planner.base import PastTurn
 
-_DEGREE = "(much|much_more|(?P<far>far) ((?P<away>away|off)|(?P<out>OUT))?|(?P<in>close|tight|near)|(?P<out>wide)|(?P<up>high)|(?P<down>low))"
+_DEGREE = (
+    "(much|much_more|(?P<far>far) ((?P<away>away|off)|(?P<out>OUT))?|(?P<in>close|tight|near)|"
+    "(?P<out>wide)|(?P<up>high)|(?P<down>low))"
+)
 _WAY = "(to|DET)* ((?P<left>LEFT)|(?P<right>RIGHT)|(?P<up>UP)|(?P<down>DOWN)|(?P<in>IN)) (SIDE)?"
 _LEAD = (
     "(FILLER|no|nope|oops|wait|hmm|AND|BUT|COMMA|DASH|STOP|that|this|it|SELF|BE|HAVEV|went|turned|moved|zoomed|panned|tilted|"
