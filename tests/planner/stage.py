@@ -17,7 +17,8 @@ _START = Pose()
 
 class Stage:
     """``looks``: what counting, asking, zooming to and tracking give back, in order; the last one is repeated. ``fail``: tools
-    that fail, with how often. ``lands``: the pose that zooming to a thing ends at; where the camera is, when not said.
+    that fail, with how often, and ``error``: what they report.
+    ``lands``: the pose that zooming to a thing ends at; where the camera is, when not said.
     ``after_tracking``: the same for following a thing, whose path then has these two poses.
     ``simulated``: whether the camera is simulated. ``places``: the viewpoint and pose of each preset; the first is home's. Without
     them, the camera has a single viewpoint, and presets and home are straight ahead."""
@@ -31,13 +32,14 @@ class Stage:
         after_tracking: Pose | None = None,
         simulated: bool = False,
         places: dict[str, tuple[str, Pose]] | None = None,
+        error: str = "",
     ) -> None:
         self.places = places or {}
         self.viewpoint = next((viewpoint for viewpoint, _ in self.places.values()), None)
         self.simulated = simulated
         self.lands, self.after_tracking = lands, after_tracking
         self.looks = list(looks)
-        self.fail = dict(fail or {})
+        self.fail, self.error = dict(fail or {}), error
         self.pose = pose
         self.calls: list[tuple[str, dict[str, Any]]] = []
 
@@ -53,7 +55,7 @@ class Stage:
         self.calls.append((name, arguments))
         if self.fail.get(name, 0) > 0:
             self.fail[name] -= 1
-            return None, f"{name} broke"
+            return None, self.error or f"{name} broke"
         clamped: tuple[str, ...] = ()
         before = self.pose
         seen: dict[str, Any] = {"source": "ground-truth", "view": arguments.get("view", "current"), "frames": ()}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from scope_ptz.planner.grammar.execution.answer_sentences import chosen_text, noun, object_pronoun
+from scope_ptz.planner.grammar.execution.answer_sentences import chosen_text, noun, object_pronoun, sentence
 
 
 @pytest.mark.parametrize(
@@ -23,3 +23,13 @@ def test_a_name_that_does_not_tell_things_apart_is_left_out() -> None:
 @pytest.mark.parametrize(("description", "pronoun"), [("man in the vest", "them"), ("forklift", "it"), ("white van", "it")])
 def test_people_are_no_things(description: str, pronoun: str) -> None:
     assert object_pronoun(description) == pronoun
+
+
+def test_a_number_that_belongs_to_the_next_word_is_kept() -> None:
+    assert chosen_text("one way signs", 3, "") == "one of the 3 one way signs in view"
+    assert chosen_text("two skips", 2, "") == "one of the 2 skips in view"
+
+
+def test_a_sentence_has_one_full_stop() -> None:
+    assert sentence("there is one. (Source: the camera.)") == "There is one. (Source: the camera.)"
+    assert sentence("there is one (at least)") == "There is one (at least)."

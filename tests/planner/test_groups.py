@@ -7,7 +7,10 @@ import pytest
 from scope_ptz.geometry import Pose
 from scope_ptz.planner.base import PastTurn
 from scope_ptz.planner.grammar.binding.answered_things import single_thing, stated_number, two_members
+from scope_ptz.planner.grammar.binding.focus import Focus
 from scope_ptz.planner.grammar.binding.narrowing import are_exclusive, narrowed
+from scope_ptz.planner.grammar.binding.pairs import other_of
+from scope_ptz.planner.grammar.execution.close_ups import view_before_close_ups
 from tests.planner.stage import Stage
 from tests.planner.test_references import ASK, COUNT, ZOOM, last_turn
 
@@ -25,6 +28,23 @@ from tests.planner.test_references import ASK, COUNT, ZOOM, last_turn
 )
 def test_the_other_of_two_is_the_opposite(instructions: tuple[str, ...], expected: tuple[str, str]) -> None:
     assert last_turn("how many dogs are there?", *instructions, count=2)[0][-1] == expected
+
+
+@pytest.mark.parametrize(
+    ("taken", "other"),
+    [
+        ("left dog", "right dog"),
+        ("dog on the left", "dog on the right"),
+        ("worker with a white helmet", "worker without a white helmet"),
+        ("man carrying a box", "man without a box"),
+        ("dog in front of the van", ""),
+        ("dog with a man", ""),
+        ("dog next to the left van", ""),
+        ("dog on top of the wall", ""),
+    ],
+)
+def test_the_other_of_two_differs_in_what_belongs_to_the_thing(taken: str, other: str) -> None:
+    assert other_of(Focus("dogs", 2, COUNT), taken) == other
 
 
 def test_the_other_of_two_that_an_answer_listed() -> None:
@@ -95,6 +115,17 @@ def test_what_is_not_in_the_close_up_is_looked_for_in_the_view_before() -> None:
     assert _replies("zoom in on the red van", "pan left 20", "zoom in on the blue van", hidden="blue van")[0] == [ZOOM]
 
 
+@pytest.mark.parametrize(("pose", "viewpoint"), [(Pose(-50, 0, 4), None), (Pose(10, 0, 4), "bridge")])
+def test_the_view_before_a_close_up_is_forgotten_when_the_camera_was_moved(pose: Pose, viewpoint: str | None) -> None:
+    stage = _Yard(simulated=True, lands=Pose(10, 0, 4))
+    turn = stage.turn("zoom in on the red van")
+    assert view_before_close_ups((turn,), Pose(10, 0, 4), None) == Pose()
+    assert view_before_close_ups((turn,), pose, viewpoint) is None
+    stage.pose = Pose(-50, 0, 4)
+    later = stage.turn("how many vans are there?", (turn,))
+    assert view_before_close_ups((turn, later), Pose(-50, 0, 4), None) is None
+
+
 @pytest.mark.parametrize(
     ("instructions", "expected"),
     [
@@ -135,6 +166,13 @@ def test_the_two_sides_that_were_counted_are_compared() -> None:
         ("blue cars", "red cars", True),
         ("people in the left half", "people in the bottom half", False),
         ("people wearing helmets", "people wearing vests", False),
+        ("closed doors", "shut doors", False),
+        ("closed doors", "open doors", True),
+        ("grey cars", "gray cars", False),
+        ("full lorries", "loaded lorries", False),
+        ("full lorries", "empty lorries", True),
+        ("parked cars", "stationary cars", False),
+        ("cyclists", "bicycles", False),
     ],
 )
 def test_descriptions_exclude_each_other(one: str, other: str, *, expected: bool) -> None:
@@ -145,6 +183,7 @@ def test_descriptions_exclude_each_other(one: str, other: str, *, expected: bool
     ("description", "predicate", "expected"),
     [
         ("open dock doors", "closed", "closed dock doors"),
+        ("shut dock doors", "closed", "closed dock doors"),
         ("people with red jackets", "blue", "people with blue jackets"),
         ("sign on the green cabin", "blue", "sign on the blue cabin"),
         ("workers wearing helmets", "in the right half", "workers in the right half wearing helmets"),
@@ -221,3 +260,9 @@ def test_a_thing_that_is_not_found_in_the_view_before_leaves_the_camera_there() 
     assert stage.pose == Pose()
     assert "so the camera is back at the view before" in reply
     assert "I went back" not in reply
+
+
+@pytest.mark.parametrize("wording", ["how many are there in total?", "how many altogether?"])
+def test_the_total_of_one_count_is_that_count(wording: str) -> None:
+    assert last_turn("how many cars are there?", wording, count=3)[0] == [(COUNT, "cars")]
+    assert not last_turn("how many vehicles are there?", "how many cars are there?", wording, count=3)[0]

@@ -6,9 +6,11 @@ import pytest
 
 from scope_ptz.geometry import Pose
 from scope_ptz.planner.base import PastTurn
+from scope_ptz.planner.grammar.execution.move_sentences import offset_text
 from tests.planner.stage import Stage
 
 FOUNTAIN = Pose(42, -6, 4)
+NOT_UNDERSTOOD = "The description 'exavator' is not understood."
 PLACES = {"gate": ("mast", Pose(5, 0, 1)), "highway": ("bridge", Pose(-30, -5, 2))}
 
 
@@ -246,6 +248,9 @@ def test_a_factor_after_zooming_out_is_asked_about() -> None:
         (("zoom in 4x", "way too close"), Pose(0, 0, 2)),
         (("zoom in 4x", "too much", "still too close"), Pose(0, 0, 1)),
         (("zoom in on the fountain", "too close"), Pose(42, -6, 2)),
+        (("zoom in on the fountain", "it's too far away"), Pose(42, -6, 5)),
+        (("zoom in 4x", "zoom out 4x", "too far away"), Pose(0, 0, 2)),
+        (("zoom in 4x", "you went too far"), Pose(0, 0, 2)),
         (("zoom in on the fountain", "a bit more"), Pose(42, -6, 5)),
         (("pan left 20", "no, more"), Pose(-40)),
         (("pan left 20", "no, a bit further"), Pose(-25)),
@@ -264,12 +269,16 @@ def test_a_move_that_went_too_far_or_not_far_enough_is_changed(instructions: tup
         (("pan left 30", "too much", "too much"), "Shall I pan right further, or left again?"),
         (("pan left 20 and tilt up 5", "too much"), "Which way shall I turn, and how far?"),
         (("pan left 30", "too far right"), None),
+        (("pan left 30", "too far away"), None),
+        (("zoom in 4x", "too far"), "Shall I zoom in further, or out again?"),
+        (("zoom in on the fountain", "that's still too far"), "Shall I zoom in further, or out again?"),
+        (("zoom in 4x", "too much", "still too far"), "Shall I zoom in further, or out again?"),
         (("pan left 30", "no more"), None),
         (("count the cones", "no, the other way"), "Which way do you mean: left, right, up, down, in or out?"),
     ],
 )
 def test_a_complaint_that_is_unclear_moves_nothing(instructions: tuple[str, ...], question: str | None) -> None:
-    stage = Stage([3])
+    stage = Stage([3], lands=FOUNTAIN)
     reply = talk(stage, *instructions)[-1].reply
     assert not stage.calls
     assert question is None or reply == question
@@ -284,9 +293,22 @@ def test_a_thing_is_followed_for_another_time_from_where_the_camera_is(said: str
 
 @pytest.mark.parametrize("said", ["no, the road roller", "no, road roller", "the road roller"])
 def test_the_verb_of_a_thing_that_was_not_understood_stays(said: str) -> None:
-    stage = Stage([True], fail={"zoom_to_object": 2})
+    stage = Stage([True], fail={"zoom_to_object": 2}, error=NOT_UNDERSTOOD)
     talk(stage, "zoom in on the exavator", said)
     assert stage.calls == [("zoom_to_object", {"description": "road roller"})]
+
+
+@pytest.mark.parametrize("said", ["a moment please", "no, typo", "no, bad idea", "no, the idea"])
+def test_a_remark_after_a_thing_that_was_not_understood_names_no_thing(said: str) -> None:
+    stage = Stage([True], fail={"zoom_to_object": 2}, error=NOT_UNDERSTOOD)
+    talk(stage, "zoom in on the exavator", said)
+    assert "zoom_to_object" not in [name for name, _ in stage.calls]
+
+
+def test_a_thing_after_another_failure_is_no_correction() -> None:
+    stage = Stage([True], fail={"zoom_to_object": 2})
+    talk(stage, "zoom in on the van", "no, road roller")
+    assert not stage.calls
 
 
 def test_the_rejected_thing_is_not_zoomed_in_on_again() -> None:
@@ -418,3 +440,81 @@ def test_where_the_camera_looks_is_said_from_the_last_preset() -> None:
     assert talk(Stage(), "go to the gate", "where are you looking?")[-1].reply.startswith("The camera is at preset gate: ")
     reply = talk(Stage(), "go to the gate", "pan left 20 and tilt down 3", "where are you looking now?")[-1].reply
     assert reply.startswith("I am looking 20 degrees to the left of and 3 degrees below preset gate: the camera is at pan -20.0")
+
+
+# What ends or continues an earlier command ----------------------------------------------------------------------------
+@pytest.mark.parametrize("said", ["hang on 5 minutes", "wait 10 seconds", "hold on 10 seconds"])
+def test_a_hesitation_is_no_new_duration(said: str) -> None:
+    stage = Stage([True])
+    talk(stage, "follow the man for 5 seconds", said)
+    assert not stage.calls
+
+
+@pytest.mark.parametrize(
+    ("instructions", "zoom"),
+    [
+        (("zoom in 2x", "to 3x"), 3),
+        (("zoom in on the fountain", "to 2x"), 2),
+        (("zoom in on the fountain", "no, to 2x"), 2),
+        (("zoom in 2x", "no, to 3x"), 3),
+        (("zoom to 4x", "zoom out 2x", "to 3x"), 3),
+    ],
+)
+def test_a_magnification_after_to_is_absolute(instructions: tuple[str, ...], zoom: float) -> None:
+    stage = Stage([True], pose=Pose(42, -6, 1.5), lands=FOUNTAIN)
+    talk(stage, *instructions)
+    assert stage.pose.as_dict() == Pose(42, -6, zoom).as_dict()
+
+
+@pytest.mark.parametrize(("said", "pan_deg"), [("5 more", -25), ("instead", -10), ("5 instead", -5), ("more", -30)])
+def test_the_question_about_a_share_is_answered_with_another_amount(said: str, pan_deg: float) -> None:
+    stage = Stage()
+    talk(stage, "pan left 20", "half of that", said)
+    assert stage.pose == Pose(pan_deg, 0, 1)
+
+
+@pytest.mark.parametrize("said", ["30", "no, 30", "again", "a bit more"])
+def test_nothing_is_corrected_after_never_mind(said: str) -> None:
+    stage = Stage()
+    talk(stage, "pan left 20", "never mind", said)
+    assert not stage.calls
+
+
+def test_another_thing_after_never_mind_is_taken_from_here() -> None:
+    stage = Stage([True], lands=FOUNTAIN)
+    talk(stage, "zoom in on the van", "never mind", "the bus")
+    assert stage.calls == [("zoom_to_object", {"description": "bus"})]
+
+
+def test_a_command_that_was_dropped_can_still_be_undone() -> None:
+    stage = Stage()
+    talk(stage, "pan left 20", "no", "never mind", "undo")
+    assert stage.pose == Pose(0, 0, 1)
+
+
+@pytest.mark.parametrize(
+    ("instructions", "axis"),
+    [
+        (("turn the camera", "what about left?"), "pan_deg"),
+        (("turn the camera", "left please"), "pan_deg"),
+        (("tilt the camera", "how about down?"), "tilt_deg"),
+    ],
+)
+def test_the_question_which_way_to_turn_is_answered(instructions: tuple[str, ...], axis: str) -> None:
+    stage = Stage()
+    talk(stage, *instructions)
+    assert [(name, list(arguments)) for name, arguments in stage.calls] == [("adjust_ptz", [axis])]
+    assert stage.calls[0][1][axis] < 0
+
+
+@pytest.mark.parametrize(
+    ("pose", "words"),
+    [
+        (Pose(0.3), "0.3 degrees to the right of"),
+        (Pose(0.3, 0, 2), "closer at"),
+        (Pose(20, -3), "20 degrees to the right of and 3 degrees below"),
+        (Pose(), "at"),
+    ],
+)
+def test_an_offset_names_what_differs(pose: Pose, words: str) -> None:
+    assert offset_text(Pose(), pose) == words

@@ -390,3 +390,7 @@ def test_where_a_followed_thing_went(question: str) -> None:
 def test_where_a_thing_went_that_was_not_followed() -> None:
     assert last_turn("follow the forklift", "where did the van go?")[0] == [(ASK, "where is the van?")]
     assert last_turn("is there a van?", "where did it go?")[0] == [(ASK, "where is the van?")]
+
+
+def test_a_followed_thing_is_named_by_whole_words() -> None:
+    assert last_turn("follow the caravan", "where did the van go?")[0] == [(ASK, "where is the van?")]

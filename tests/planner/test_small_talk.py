@@ -187,3 +187,24 @@ def test_the_examples_suit_the_kind_of_thing(question: str, example: str) -> Non
 
 def test_what_is_not_counted_is_not_offered_to_be_counted() -> None:
     assert answerable_questions("any smoke from the chimney?").startswith('I can answer, for example: "is there any smoke?"')
+
+
+@pytest.mark.parametrize("instruction", ["a good picture", "perfect picture please", "a nice shot of the gate"])
+def test_a_good_picture_is_asked_for_and_no_praise(instruction: str) -> None:
+    assert "take_image" in [call.name for call in plan(instruction, PRESETS).calls]
+
+
+@pytest.mark.parametrize("instruction", ["what a great shot", "that is a great picture", "great work", "that's a perfect view"])
+def test_a_picture_that_was_taken_is_praised(instruction: str) -> None:
+    assert reply_to(instruction)[1].startswith(("Thank you. ", "All right. "))
+
+
+def test_how_a_thing_is_doing_is_no_question_about_the_planner() -> None:
+    assert not reply_to_first_step("how is it doing?").startswith("I am well")
+    assert reply_to_first_step("how is it going?").startswith("I am well")
+
+
+def test_a_full_circle_is_where_to_look_only_for_a_question() -> None:
+    assert [call.arguments for call in plan("look all around, the full circle", PRESETS).calls] == [{"pan_deg": 360}]
+    asked = plan("how many cars are there all around, the full circle?", PRESETS).calls
+    assert [call.arguments for call in asked] == [{"description": "cars", "view": "full"}]

@@ -48,6 +48,11 @@ def test_a_part_that_is_taken_back_is_left_out(instruction: str, expected: str) 
         "If you see a van, follow it. Actually, don't follow the van.",
         "Pan left 20 and tilt up 10. Leave the tilt alone.",
         "Pan left 20 and tilt up 10. Actually, forget the tilt, just go home.",
+        "pan left 20 and tilt up 10. no, forget the tilt and the pan",
+        "pan left 20 and tilt up 10. no, forget the tilt or the pan",
+        "pan left 20, twice, no forget the pan, tilt up 5",
+        "turn left 20, look up 10 and again, no, don't tilt",
+        "pan left 20, tilt up 5, undo, forget the tilt",
     ],
 )
 def test_unclear_words_that_take_something_back_are_asked_about(instruction: str) -> None:

@@ -76,7 +76,7 @@ def decide_on(meaning: Understanding, state: State) -> Decision:
         may_go_closer=briefing.simulated,
         viewpoint=viewpoint,
         viewpoints=briefing.viewpoints,
-        wider_view=view_before_close_ups(state.conversation),
+        wider_view=view_before_close_ups(state.conversation, briefing.pose, viewpoint),
     )
     outcomes = [outcome for exchange in state.history for outcome in exchange.outcomes]
     call = _next_call(program, meaning, outcomes)

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from scope_ptz.english import listing
 from scope_ptz.planner.grammar import instruction_tree as ast
 from scope_ptz.planner.grammar.binding.earlier_comparison import EarlierCount, counts_of_tour, counts_to_add, last_two_presets
-from scope_ptz.planner.grammar.binding.focus import things_to_add
+from scope_ptz.planner.grammar.binding.focus import latest_counts, things_to_add
 from scope_ptz.planner.grammar.binding.followup_steps import FollowUpSteps
 from scope_ptz.planner.grammar.binding.names import UnresolvedError
 from scope_ptz.planner.grammar.binding.preset_matching import match_exactly
@@ -58,6 +58,11 @@ class CountingSteps(FollowUpSteps):
             for place in (self._places(()) if part.everywhere else (part.place,))
         ]
         return tuple(self._tally(part) for part in every)
+
+    def only_count(self) -> str:
+        """Return what the latest turns counted if it is a single thing, so that nothing can be added; otherwise empty."""
+        latest = latest_counts(self.conversation)
+        return latest[0] if len(latest) == 1 and not counts_to_add(self.earlier_counts) else ""
 
     def _total(self, step: ast.Total) -> Sequence[ast.Step]:
         self.has_counted = True

@@ -21,9 +21,8 @@ from scope_ptz.planner.grammar.binding.noun_heads import (
     names_person,
     names_several,
     noun_end,
-    without_number,
 )
-from scope_ptz.planner.grammar.execution.answer_sentences import noun
+from scope_ptz.planner.grammar.execution.answer_sentences import noun, without_number
 
 if TYPE_CHECKING:
     from scope_ptz.planner.base import PastTurn, ToolOutcome

@@ -34,6 +34,15 @@ _EXCLUSIVE_STATES = (
     frozenset({"open", "closed", "shut"}), frozenset({"lit", "unlit"}), frozenset({"empty", "full", "loaded"}),
     frozenset({"raised", "lowered"}), frozenset({"moving", "stationary", "parked"}),
 )  # fmt: skip
+_SYNONYMS = (
+    frozenset({"closed", "shut"}), frozenset({"full", "loaded"}), frozenset({"stationary", "parked"}), frozenset({"grey", "gray"}),
+    frozenset({"gold", "golden"}),
+)  # fmt: skip
+"""Words for one colour or state, so that things of both must not be added."""
+
+_RIDDEN = frozenset({"cyclist", "bicycle"})
+"""A rider and what is ridden, which may be one thing to perception."""
+
 _OPPOSITE_SIDES = (({"left"}, {"right"}), ({"top", "upper"}, {"bottom", "lower"}))
 _POSTURES = frozenset(
     {"sitting", "standing", "walking", "kneeling", "lying", "running", "crouching", "cycling", "parked", "moving"}
@@ -62,7 +71,7 @@ def narrowed(description: str, predicate: str) -> str:
     parts = [part for part in _BOUNDARY.split(rest.strip()) if part and _kind(part) != kind] if rest else []
     words = head.split(" ")
     if modifier.lower() in COLOURS or _is_adjective(modifier):
-        front = [word for word in words[:-1] if not _excludes(word.lower(), modifier.lower())]
+        front = [word for word in words[:-1] if not _says_the_same_of(word.lower(), modifier.lower())]
         return " ".join([modifier, *front, words[-1], *parts])
     if kind == "posture":
         words = [word for word in words if word.lower() not in _POSTURES] or words
@@ -73,6 +82,11 @@ def narrowed(description: str, predicate: str) -> str:
 
 def _excludes(one: str, other: str) -> bool:
     """Return whether nothing can be described by both of two adjectives: two colours, or "open" and "closed"."""
+    return _says_the_same_of(one, other) and not any({one, other} <= words for words in _SYNONYMS)
+
+
+def _says_the_same_of(one: str, other: str) -> bool:
+    """Return whether two adjectives both state the colour of a thing, or both whether it is open, lit, empty, raised or moving."""
     return {one, other} <= COLOURS or any({one, other} <= states for states in _EXCLUSIVE_STATES)
 
 
@@ -96,6 +110,8 @@ def are_exclusive(one: str, other: str) -> bool:
     """
     (head, rest), (other_head, other_rest) = head_and_rest(one.lower()), head_and_rest(other.lower())
     kinds, other_kinds = _concepts(head), _concepts(other_head)
+    if kinds | other_kinds == _RIDDEN:
+        return False
     if kinds and other_kinds and not kinds & other_kinds:
         return not any(kind & _concepts_above(names) for kind, names in ((kinds, other_kinds), (other_kinds, kinds)))
     words, other_words = head.split(" ")[:-1], other_head.split(" ")[:-1]
@@ -180,10 +196,10 @@ def with_noun(phrase: str, description: str, *, is_group: bool = False) -> str:
             stays "the nearest black taxi".
     """
     colour, _, one = phrase.rpartition(" ")
-    if one in {"one", "ones"} and colour.lower() in COLOURS and (recoloured := _recoloured(description, colour)):
-        return noun(recoloured, 2 if one == "ones" else 1)
-    number, ones = (2, "ones") if one == "ones" else (1, "one")
-    if is_group and (one == ones and _tells_apart(colour)):
+    stands_for_noun, number = one in {"one", "ones"}, 2 if one == "ones" else 1
+    if stands_for_noun and colour.lower() in COLOURS and (recoloured := _recoloured(description, colour)):
+        return noun(recoloured, number)
+    if is_group and stands_for_noun and _tells_apart(colour):
         return f"{colour} {noun(description, number)}"
     if is_group and (place := _ONE_AT.fullmatch(phrase)) is not None and is_region(place["place"]):
         return narrowed(noun(description, number), place["place"])

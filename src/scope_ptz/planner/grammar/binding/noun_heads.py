@@ -10,7 +10,6 @@ from scope_ptz.english import is_plural, singular
 from scope_ptz.english.grammar.common_nouns import is_common_noun
 from scope_ptz.english.grammar.lexicon import lexicon, nouns_in
 from scope_ptz.english.grammar.questions.question_parser import parse_description
-from scope_ptz.english.numerals import cardinal
 from scope_ptz.planner.grammar.execution.answer_sentences import head_and_rest
 
 _ANYONE = frozenset({"anyone", "anybody", "someone", "somebody", "everyone", "everybody", "who"})
@@ -134,10 +133,3 @@ def is_same_kind(one: str, other: str) -> bool:
 
 def _singular(word: str) -> str:
     return singular(word.lower())
-
-
-def without_number(description: str) -> tuple[str, int | None]:
-    """Split a description from the number before it: "skips" and 2 for "two skips"; None for a description without a number."""
-    first, _, rest = description.partition(" ")
-    number = cardinal(first.lower())
-    return (rest, number) if rest and number is not None and names_several(rest) else (description, None)

@@ -7,8 +7,9 @@ from collections.abc import Sequence
 
 from scope_ptz.english.numerals import ORDINALS
 from scope_ptz.planner.grammar.binding.focus import Focus
+from scope_ptz.planner.grammar.binding.narrowing import is_region, is_worn
 from scope_ptz.planner.grammar.binding.noun_heads import head_noun, is_same_kind
-from scope_ptz.planner.grammar.execution.answer_sentences import noun
+from scope_ptz.planner.grammar.execution.answer_sentences import head_and_rest, noun
 
 _OPPOSITES = {
     "left": "right", "leftmost": "rightmost", "left-hand": "right-hand", "first": "second", "nearest": "farthest",
@@ -20,6 +21,7 @@ _OPPOSITE = {**_OPPOSITES, **{second: first for first, second in reversed(_OPPOS
 _AFTER = re.compile(r"(?:next|following) one|one (?:after|following)(?: (?:it|that))?", re.IGNORECASE)
 _BEFORE = re.compile(r"previous one|one before(?: (?:it|that))?", re.IGNORECASE)
 _WORN = re.compile(r" (?:with|wearing|carrying|holding) (?=\w)")
+_CARRIED = re.compile(r" (?:wearing|carrying|holding) (?=\w)")
 _WITHOUT = re.compile(r" (?:without|not wearing|not carrying|not holding) (?=\w)")
 
 
@@ -68,6 +70,9 @@ def taken_of(foci: Sequence[Focus], pair: int, current: str = "") -> str:
 def other_of(pair: Focus, taken: str) -> str:
     """Return the description of the other one of two things; empty if what tells them apart is not clear.
 
+    It has the opposite of an adjective before the noun ("left dog") or of a place in the picture ("dog on the left"), or lacks what
+    the one wears or carries. A dog "in front of the van" may be beside another one in front of it.
+
     Args:
         pair: The two things.
         taken: The one of them that was taken: "left dog", or "worker with a white helmet".
@@ -75,11 +80,15 @@ def other_of(pair: Focus, taken: str) -> str:
     meant = [i for i, member in enumerate(pair.members) if _describes(taken, member)]
     if len(pair.members) == 2 and len(meant) == 1:
         return pair.members[1 - meant[0]]
-    words = taken.split(" ")
-    places = [i for i, word in enumerate(words) if word.lower() in _OPPOSITE]
+    head, rest = head_and_rest(taken)
+    is_place = is_region(rest.strip()) if rest else False
+    words, last = taken.split(" "), len(head.split(" ")) - 1
+    places = [i for i, word in enumerate(words) if word.lower() in _OPPOSITE and (i < last or (i > last and is_place))]
     if len(places) == 1:
         words[places[0]] = _OPPOSITE[words[places[0]].lower()]
         return " ".join(words)
+    if places or not (is_worn(taken) or _CARRIED.search(taken)):
+        return ""
     if _WITHOUT.search(taken):
         return _WITHOUT.sub(" with ", taken, count=1)
     if len(_WORN.findall(taken)) == 1 and not _WORN.search(pair.description):

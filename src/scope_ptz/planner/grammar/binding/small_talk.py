@@ -29,12 +29,15 @@ _DEED = "job|work|stuff|effort|camera|shot|picture|view"
 _PRAISING = (
     f"(FILLER)* (you|that|this|it) (BE|was|were|HAVEV|DOV|did|been|doing|done|working)+ (DET|very|so|really|most|FILLER|ADVERB)* "
     f"({_ADMIRED}|well|well_done|spot_on|star|legend|gem|genius|clever|smart|wonders) ({_DEED}|FILLER)*"
-    f"|(FILLER|what|WHQ|DET|very|really)* ({_ADMIRED}|that_is_great|that_is_perfect) ({_DEED}) (FILLER)*"
+    f"|(FILLER)* (what|WHQ) (DET|very|really)* ({_ADMIRED}) ({_DEED}) (FILLER)*"
+    f"|(FILLER|DET|very|really)* ({_ADMIRED}) (job|work|stuff|effort) (FILLER)*"
+    f"|(FILLER)* (that_is_great|that_is_perfect) ({_DEED}) (FILLER)*"
 )
-"""Praise: "you are doing great", "that was brilliant", "what a great job"."""
+"""Praise: "you are doing great", "that was brilliant", "what a great job". "A good picture" asks for one."""
 
 _WELLBEING = (
-    "(FILLER|AND)* how (BE|DOV|do) (SELF|you|things|it|everything|life) (doing|do|DOACT|CARRY-ING|today|feeling|FILLER)*"
+    "(FILLER|AND)* how (BE|DOV|do) (SELF|you|things|everything|life) (doing|do|DOACT|CARRY-ING|today|feeling|FILLER)*"
+    "|(FILLER|AND)* how (BE|'s) it going (today|FILLER)*"
     "|(FILLER|AND)* how BE SELF (day|shift|morning|afternoon|evening) (CARRY-ING|so|far|FILLER)*"
 )
 """Polite questions about how somebody is: "how are you?", "how's it going?"."""

@@ -138,8 +138,10 @@ def _read(said: str, preset_names: tuple[str, ...] | None, conversation: Sequenc
     parsed = parse(said, preset_names or ())
     try:
         steps = question_about_topic(said, preset_names or ()) or parsed.steps
+        resolver = Resolver(preset_names, tuple(conversation))
         if conversation and is_request_for_total(said):
-            steps = (ast.Total(()),)
+            counted = resolver.only_count()
+            steps = (ast.Count((ast.Thing(counted),)),) if counted else (ast.Total(()),)
         if about_side := question_about_side(said, preset_names or ()):
             steps = about_side
         if conversation and steps and all(isinstance(step, ast.Report) for step in steps):
@@ -148,7 +150,7 @@ def _read(said: str, preset_names: tuple[str, ...] | None, conversation: Sequenc
             steps = followup_of(said, preset_names or ())
         if steps is None:
             raise _question_about_unparsed(parsed)
-        bound = _without_repeated_visits(Resolver(preset_names, tuple(conversation)).bind(steps))
+        bound = _without_repeated_visits(resolver.bind(steps))
     except UnresolvedError as unresolved:
         return Understanding(clarification=str(unresolved))
     if _NO_CLOSE_UP.search(said):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from scope_ptz.geometry import wrap_pan_deg
 from scope_ptz.planner.grammar.execution.answer_sentences import noun, object_pronoun
 from scope_ptz.planner.grammar.execution.move_sentences import degrees
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme, lexemes_of
@@ -46,7 +47,7 @@ def report_of_last_following(thing: str, conversation: Sequence[PastTurn]) -> st
         return ""
     followed = str(last.call.arguments["description"])
     is_pronoun = all(x.has("PRON") for x in _words(thing))
-    is_followed = is_pronoun or noun(followed, 1).lower().endswith(_without_article(thing).lower())
+    is_followed = is_pronoun or f" {noun(followed, 1)}".lower().endswith(f" {_without_article(thing)}".lower())
     return _report(noun(followed, 1), last.result) if is_followed else ""
 
 
@@ -69,7 +70,7 @@ def _report(followed: str, result: Mapping[str, Any]) -> str:
         return f"I lost the {followed} at once, so I do not know where {'they' if pronoun == 'them' else 'it'} went"
     is_seen_last = bool(result["path"][-1]["seen"])
     ending = f"had {pronoun} in view to the end" if is_seen_last else f"lost {pronoun} after {_seconds(seen[-1]['time_s'])}"
-    turn_deg = (seen[-1]["pose"]["pan_deg"] - seen[0]["pose"]["pan_deg"] + 180) % 360 - 180
+    turn_deg = wrap_pan_deg(seen[-1]["pose"]["pan_deg"] - seen[0]["pose"]["pan_deg"])
     if abs(turn_deg) < _LEAST_TURN_DEG:
         return f"The {followed} stayed in about the same direction, and I {ending}"
     side = "right" if turn_deg > 0 else "left"

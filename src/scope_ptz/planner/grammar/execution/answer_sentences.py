@@ -9,8 +9,8 @@ from scope_ptz import english
 from scope_ptz.builtin_names import GROUND_TRUTH
 from scope_ptz.english.grammar.common_nouns import is_common_noun
 from scope_ptz.english.grammar.lexicon import lexicon
-from scope_ptz.english.grammar.numbers import NUMBER_WORDS
 from scope_ptz.english.nouns import UNCOUNTABLE, plural_noun
+from scope_ptz.english.numerals import cardinal
 from scope_ptz.planner.grammar.answerable import answerable_questions
 from scope_ptz.planner.grammar.execution.visible_counts import is_complete
 from scope_ptz.planner.grammar.instruction_tree import (
@@ -174,7 +174,7 @@ def sentence(text: str) -> str:
     text = text.strip()
     if not text:
         return ""
-    return text[0].upper() + text[1:] + ("" if text[-1] in ".!?" else ".")
+    return text[0].upper() + text[1:] + ("" if text.endswith((".", "!", "?", ".)")) else ".")
 
 
 _NOT_UNDERSTOOD = re.compile(
@@ -229,16 +229,21 @@ def with_lower_initial(text: str) -> str:
 
 def chosen_text(description: str, matches: int, chosen: str) -> str:
     """Return which of several things was chosen: "one of the 20 signs in view, the Plough sign"."""
-    description = _without_number(description)
+    description, _ = without_number(description)
     name = chosen.removeprefix("The ").removeprefix("the ")
     name = "" if name.lower() == noun(description, 1).lower() else name  # "white van" does not say which of the white vans
     return f"one of the {matches} {noun(description, matches)} in view{f', the {name}' if name else ''}"
 
 
-def _without_number(description: str) -> str:
-    """Return "skips" for "two skips": how many there are is said before it."""
+def without_number(description: str) -> tuple[str, int | None]:
+    """Split a description from the number before it: "skips" and 2 for "two skips"; None for a description without a number.
+
+    In "one way signs", the number belongs to the next word.
+    """
     first, _, rest = description.partition(" ")
-    return rest if rest and (first.isdigit() or first.lower() in NUMBER_WORDS) else description
+    count = cardinal(first.lower())
+    is_counted = count not in {None, 1} and english.is_plural(head_and_rest(rest)[0].split(" ")[-1].lower())
+    return (rest, count) if rest and is_counted else (description, None)
 
 
 def reason_and_reaction(reason: str, reaction: str) -> str:

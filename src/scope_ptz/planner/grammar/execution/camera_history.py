@@ -11,9 +11,10 @@ from scope_ptz.geometry import Pose, wrap_pan_deg
 if TYPE_CHECKING:
     from scope_ptz.planner.base import PastTurn
 
-Effect = Literal["done", "corrected", "returned", "rejected", "nothing"]
+Effect = Literal["done", "corrected", "returned", "rejected", "dismissed", "nothing"]
 """What came of a turn: it was carried out; it was carried out in place of the previous command; it put the camera back; it rejected
-the previous command; or nothing was done, because the planner asked a question or every call failed."""
+the previous command; the user dropped the subject ("never mind"), so that no later turn corrects the command; or nothing was done,
+because the planner asked a question or every call failed."""
 
 ANGLE_TOLERANCE_DEG = 0.02
 ZOOM_TOLERANCE = 0.002

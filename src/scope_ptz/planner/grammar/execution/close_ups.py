@@ -22,13 +22,19 @@ _WENT_BACK = "I went back to the view before"
 _RETURN_FIRST = '. If it was in the view before, say "go back" first'
 
 
-def view_before_close_ups(conversation: Sequence[PastTurn]) -> Pose | None:
+def view_before_close_ups(conversation: Sequence[PastTurn], now: Pose, viewpoint: str | None) -> Pose | None:
     """Return the pose from which the camera zoomed in on a thing, or followed it, if it has made no other move since.
 
-    After several close-ups in a row, it is the pose before the first of them.
+    After several close-ups in a row, it is the pose before the first of them. None if anybody else has moved the camera.
+
+    Args:
+        conversation: The earlier turns.
+        now: The camera's pose now.
+        viewpoint: The camera's viewpoint now; None for a camera that has a single one.
     """
     wide: Pose | None = None
-    for turn in conversation:
+    nexts = [*((turn.start, turn.viewpoint) for turn in conversation[1:]), (now, viewpoint)]
+    for turn, (next_start, next_viewpoint) in zip(conversation, nexts, strict=False):
         pose, before = turn.start, wide
         outcomes = [o for exchange in turn.exchanges for o in exchange.outcomes if o.error is None]
         for outcome in outcomes:
@@ -41,9 +47,13 @@ def view_before_close_ups(conversation: Sequence[PastTurn]) -> Pose | None:
             elif has_moved and wide is None:
                 wide = pose
             pose = after
+        has_left = any(outcome.call.name in _OTHER_PLACE for outcome in outcomes)
         if pose is not None and turn.start is not None and is_same_pose(pose, turn.start):
-            has_left = any(outcome.call.name in _OTHER_PLACE for outcome in outcomes)
             wide = None if has_left else before  # the camera was put back
+        if pose is None or next_start is None or not is_same_pose(pose, next_start):
+            wide = None
+        if not has_left and turn.viewpoint != next_viewpoint:
+            wide = None
     return wide
 
 
@@ -84,7 +94,8 @@ class CloseUpSteps(RunState):
                 start = wider or start
                 self._note(_WENT_BACK)
             else:
-                yield from self._camera_call("adjust_ptz", **return_arguments(start, self.pose, self.limits))
+                if arguments := return_arguments(start, self.pose, self.limits):
+                    yield from self._camera_call("adjust_ptz", **arguments)
                 self.wider_view, views = wider, "in this view or in the one before"
         self._last_was_yes = bool(result.get("found")) if result is not None else None
         if result is None or not result.get("found"):

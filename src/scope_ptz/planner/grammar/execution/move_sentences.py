@@ -8,6 +8,7 @@ from typing import Any
 from scope_ptz import english
 from scope_ptz.geometry import Pose, wrap_pan_deg
 from scope_ptz.planner.grammar.execution.answer_sentences import count_word, number
+from scope_ptz.planner.grammar.execution.camera_history import ZOOM_TOLERANCE
 
 
 def move_text(arguments: Mapping[str, Any]) -> str:
@@ -135,12 +136,17 @@ def limits_text(axes: Sequence[str]) -> str:
 
 def offset_text(reference: Pose, pose: Pose) -> str:
     """Return where a pose looks, seen from another one, as words before its name: "20 degrees to the left of", "closer at"."""
-    pan_deg, tilt_deg = round(wrap_pan_deg(pose.pan_deg - reference.pan_deg)), round(pose.tilt_deg - reference.tilt_deg)
-    ways = [
-        f"{degrees(angle_deg)} {after if angle_deg > 0 else before}"
-        for angle_deg, before, after in ((pan_deg, "to the left of", "to the right of"), (tilt_deg, "below", "above"))
-        if angle_deg
-    ]
-    if ways:
-        return " and ".join(ways)
-    return "closer at" if pose.zoom > reference.zoom else "wider at"
+    pan_deg, tilt_deg = wrap_pan_deg(pose.pan_deg - reference.pan_deg), pose.tilt_deg - reference.tilt_deg
+    if ways := _ways_text(round(pan_deg), round(tilt_deg)):
+        return ways
+    if abs(pose.zoom / reference.zoom - 1) >= ZOOM_TOLERANCE:
+        return "closer at" if pose.zoom > reference.zoom else "wider at"
+    return _ways_text(_rounded(pan_deg), _rounded(tilt_deg)) or "at"
+
+
+def _ways_text(pan_deg: float, tilt_deg: float) -> str:
+    """Return two angles in words before the name of a place: "20 degrees to the left of and 5 degrees below"; empty for 0."""
+    sides = ((pan_deg, "to the left of", "to the right of"), (tilt_deg, "below", "above"))
+    return " and ".join(
+        f"{degrees(angle_deg)} {after if angle_deg > 0 else before}" for angle_deg, before, after in sides if angle_deg
+    )

@@ -13,6 +13,7 @@ from scope_ptz.planner.grammar.binding.earlier_moves.corrections import (
     asks_for_another_move,
     corrected_text,
     duration_in_answer,
+    hesitates,
     rejects_for_other_way,
     repeats_amount,
     size_in_answer,
@@ -57,13 +58,20 @@ _CORRECTION = re.compile(r"(?:no|nope|sorry|wait|oops|i meant|i mean|i said|make
 _ASKED = re.compile(r"By (?:how many degrees|what factor) shall I (?:pan|tilt|zoom) (left|right|up|down|in|out)\?")
 """The question about "the other way", which the next turn may answer with an amount."""
 
+_ASKED_WAY = re.compile(r"Shall I (?:turn|tilt) (left|up) or (right|down)\?")
+"""The question about a turn without a direction, which the next turn may answer with one."""
+
+_ANSWERED_WAY = (
+    "(FILLER|COMMA|AND|what_about|how_about|to|DET)* ((?P<left>LEFT)|(?P<right>RIGHT)|(?P<up>UP)|(?P<down>DOWN)) "
+    "(SIDE|FILLER|THEN|STOP|QUESTION|COMMA)*"
+)
 _ASKED_SHARE = re.compile(r"Shall I (?P<move>(?:pan|tilt) \w+ [\d.]+ degrees) instead, or [\d.]+ degrees more\?")
 """The question about "half of that", which the next turn may answer with "instead" or "more"."""
 
 _NO_LEAD = "(FILLER|oh|COMMA|DASH|STOP)* (no|nope|nah|oops|wait|sorry) (FILLER|no|wait|sorry|COMMA|DASH|STOP)*"
 """Words before a command that reject the last one."""
 
-_INSTEAD_OR_MORE = "(FILLER|COMMA)* (NUM DEG?)? (INSTEAD|more|MORE|further) (FILLER|COMMA|STOP)*"
+_INSTEAD_OR_MORE = "(FILLER|COMMA)* ((?P<number>NUM) DEG?)? (INSTEAD|more|MORE|further) (FILLER|COMMA|STOP)*"
 _ZOOM_BACK = "(ZOOM|go|come|FILLER)* (back_out|back_in) (FILLER|AGAINWORD|STOP)*"
 _ANY_WAY = "Which way do you mean: left, right, up, down, in or out?"
 
@@ -103,7 +111,9 @@ def _effect(turn: PastTurn, steps: Sequence[ast.Step], before: Sequence[Command]
     if was_done:
         return "corrected" if corrects else "done"
     if turn.reply in {NOTHING_DONE, NEVER_MIND} and before and before[-1].effect in {"done", "corrected"}:
-        return "rejected"
+        return "rejected" if turn.reply == NOTHING_DONE else "dismissed"
+    if turn.reply == NEVER_MIND and before and before[-1].effect == "rejected":
+        return "dismissed"
     return "done" if steps and all(isinstance(step, _DONE_WITHOUT_CALLS) for step in steps) else "nothing"
 
 
@@ -135,8 +145,12 @@ def _continuation(
     last = standing_command(commands)
     if (answered := _answer_about_other_way(lexemes, conversation[-1], last)) is not None:
         return Continuation(answered)
-    if (share := _ASKED_SHARE.fullmatch(conversation[-1].reply)) is not None and full_match(_INSTEAD_OR_MORE, lexemes):
-        return Continuation(share["move"], corrects=any(x.has("INSTEAD") for x in lexemes))
+    if (turned := _answer_about_way(lexemes, conversation[-1])) is not None:
+        return Continuation(turned)
+    if (share := _ASKED_SHARE.fullmatch(conversation[-1].reply)) is not None and (answer := full_match(_INSTEAD_OR_MORE, lexemes)):
+        axis, way = share["move"].split(" ")[:2]
+        text = f"{axis} {way} {answer['number'][0].value:g} degrees" if answer.has("number") else share["move"]
+        return Continuation(text, corrects=any(x.has("INSTEAD") for x in lexemes))
     if (neighbour := _neighbour(said, conversation, presets)) is not None:
         return Continuation(f"go to preset {neighbour}")
     if (meant := _about_same_command(lexemes, said, commands, conversation)) is not None:
@@ -158,7 +172,7 @@ def _continuation(
         return Continuation(said, question=question)
     if (changed := next_thing(lexemes, said, last) or _changed_instruction(said, last)) is not None:
         return Continuation(changed)
-    if (text := _corrected_within(said, last, presets)) is not None:
+    if (text := _corrected_within(lexemes, said, last, presets)) is not None:
         return Continuation(text, corrects=True)
     if (again := same_axis_again(said, lexemes, commands, presets) or share_of_zoom(lexemes, move)) is not None:
         return Continuation(again)
@@ -209,6 +223,14 @@ def _answer_about_other_way(lexemes: Sequence[Lexeme], turn: PastTurn, last: Com
     return answered.text if answered is not None else None
 
 
+def _answer_about_way(lexemes: Sequence[Lexeme], turn: PastTurn) -> str | None:
+    """Return the move that answers "shall I turn left or right?": "what about left?"; None for others."""
+    asked, match = _ASKED_WAY.fullmatch(turn.reply), full_match(_ANSWERED_WAY, lexemes)
+    if asked is None or match is None:
+        return None
+    return next((towards(way).text for way in asked.groups() if match.has(way)), None)
+
+
 def _other_way(said: str, lexemes: Sequence[Lexeme], move: SingleMove) -> Continuation:
     """Return the move by the same amount in the other direction, or the question how far if that is not clear."""
     other = move.reversed()
@@ -230,11 +252,13 @@ def _changed_instruction(said: str, last: Command) -> str | None:
     return None
 
 
-def _corrected_within(said: str, last: Command, presets: tuple[str, ...]) -> str | None:
+def _corrected_within(lexemes: Sequence[Lexeme], said: str, last: Command, presets: tuple[str, ...]) -> str | None:
     """Return the last instruction with the part replaced that a correction names ("no, the yard"); None for others."""
     if len(last.steps) != 1:
         return None
     (step,) = last.steps
+    if isinstance(step, ast.Track) and hesitates(lexemes):
+        return None
     is_aim = isinstance(step, ast.Move) and all(isinstance(part, ast.Aim) for part in step.parts)
     if _CORRECTION.match(said) and (is_aim or isinstance(step, ast.GoToPreset | ast.ZoomTo | ast.Count | ast.Track)):
         corrected = parse(f"{last.text.rstrip('.!? ')}, {said}", presets)

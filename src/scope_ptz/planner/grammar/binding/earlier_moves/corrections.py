@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from scope_ptz.english.grammar.lexicon import lexicon
 from scope_ptz.planner.grammar import instruction_tree as ast
 from scope_ptz.planner.grammar.binding.earlier_moves.commands import Command
 from scope_ptz.planner.grammar.binding.earlier_moves.single_moves import SingleMove, axis_of_way, single_move, towards
 from scope_ptz.planner.grammar.binding.focus import foci_of
-from scope_ptz.planner.grammar.binding.noun_heads import head_noun, names_several
+from scope_ptz.planner.grammar.binding.noun_heads import bare_noun, head_noun, names_several
+from scope_ptz.planner.grammar.execution.answer_sentences import is_not_understood
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 from scope_ptz.planner.grammar.parsing.instruction_parser import parse
 from scope_ptz.planner.grammar.parsing.parts.noun_phrases import is_noun_phrase
@@ -99,7 +101,7 @@ def thing_after_failure(lexemes: Sequence[Lexeme], text: str, last: Command, tur
         turn: The last turn.
     """
     outcomes = [outcome for exchange in turn.exchanges for outcome in exchange.outcomes]
-    if len(last.steps) != 1 or not outcomes or any(outcome.error is None for outcome in outcomes):
+    if len(last.steps) != 1 or not outcomes or not all(is_not_understood(o.error or "") for o in outcomes):
         return None
     step, editing = last.steps[0], match_start(_CORRECTING, lexemes)
     rest = _without_edges(lexemes[editing.size if editing is not None else 0 :])
@@ -108,6 +110,8 @@ def thing_after_failure(lexemes: Sequence[Lexeme], text: str, last: Command, tur
     if editing is None and any(x.has("PRESET") for x in rest):
         return None  # "the gate" may be the preset
     thing = text[rest[0].start : rest[-1].end]
+    if lexicon().concept(bare_noun(thing).lower()) is None:
+        return None  # "a moment please", "no, bad idea"
     if editing is not None and not _is_bare_no(lexemes[: editing.size]) and all(x.has("FREE") for x in rest):
         return _about(step, f"the {thing}" if not isinstance(step, ast.Count) else thing)  # "no, road roller"
     return _with_other_thing(step, thing, rest)
@@ -136,10 +140,18 @@ def duration_in_answer(lexemes: Sequence[Lexeme], last: Command) -> str | None:
         return None
     if not (match.has("editing") or match.has("for") or match.has("unit")):
         return None
+    if hesitates(lexemes):
+        return None  # "hang on 5 minutes", unlike "wait, 10 seconds"
     thing = last.steps[0].thing
     followed = f"the {thing.text}" if thing.text else thing.pronoun or "it"
     unit = "minutes" if match.has("unit") and match["unit"][0].has("MINUTES") else "seconds"
     return f"follow {followed} for {match['number'][0].value:g} {unit}"
+
+
+def hesitates(lexemes: Sequence[Lexeme]) -> bool:
+    """Return whether a text begins with a hesitation and no pause after it: "wait 10 seconds", unlike "wait, 10 seconds"."""
+    editing = match_start(_CORRECTING, lexemes)
+    return editing is not None and full_match(_HESITATION, lexemes[: editing.size]) is not None
 
 
 def rejects_for_other_way(lexemes: Sequence[Lexeme]) -> bool:
@@ -183,7 +195,10 @@ def size_in_answer(lexemes: Sequence[Lexeme], asked: SingleMove, last: SingleMov
 
 
 def _move_instead(lexemes: Sequence[Lexeme], text: str, move: SingleMove) -> SingleMove | None:
-    """Return the move of "tilt down instead", with the amount of the corrected move if it states none; None for other texts."""
+    """Return the move of "pan right instead"; None for other texts.
+
+    A move about the axis of the corrected move has its amount if it states none itself.
+    """
     rest = _without_edges(lexemes)
     if not rest or not any(x.has("INSTEAD") for x in lexemes) or any(x.has("NOT", "OR") for x in rest):
         return None

@@ -1,4 +1,4 @@
-"""Read complaints that the last move went too far: "too much", "not that far", "a bit less", "too close"."""
+"""Read complaints about the last move: "too much", "not that far", "a bit less", "too close", "too far away"."""
 
 from __future__ import annotations
 
@@ -17,18 +17,27 @@ from scope_ptz.planner.grammar.parsing.parts.patterns import full_match
 if TYPE_CHECKING:
     from scope_ptz.planner.base import PastTurn
 
-_DEGREE = "(much|much_more|far (away|(?P<out>OUT))?|(?P<in>close|tight|near)|(?P<out>wide)|(?P<up>high)|(?P<down>low))"
+_DEGREE = (
+    "(much|much_more|(?P<far>far) ((?P<away>away|off)|(?P<out>OUT))?|(?P<in>close|tight|near)|"
+    "(?P<out>wide)|(?P<up>high)|(?P<down>low))"
+)
 _WAY = "(to|DET)* ((?P<left>LEFT)|(?P<right>RIGHT)|(?P<up>UP)|(?P<down>DOWN)|(?P<in>IN)) (SIDE)?"
 _LEAD = (
     "(FILLER|no|nope|oops|wait|hmm|AND|BUT|COMMA|DASH|STOP|that|this|it|SELF|BE|HAVEV|went|turned|moved|zoomed|panned|tilted|"
     "gone|been|still|just|now)*"
 )
+_WENT = frozenset({"went", "turned", "moved", "zoomed", "gone"})
+"""Words that say that the camera went too far, and not that a thing is too far away."""
+
 _HOW = "(LITTLE|LOT|way|a)*"
 _END = "(for SELF|FILLER|now|COMMA|STOP|DASH)*"
 _OVERSHOOT = (
     f"{_LEAD} ({_HOW} too {_DEGREE}|(bit|a_bit) much|not (quite|so|that|as|too) {_DEGREE}|{_HOW} less {_DEGREE}?) ({_WAY})? {_END}"
 )
 _STILL = "(FILLER|COMMA|that|it|BE)* still (_)*"
+_FURTHER_OR_BACK = "Shall I zoom in further, or out again?"
+"""The question about "too far" after a zoom: the zoom went too far, or the thing still is too far away."""
+
 _WAYS = ("left", "right", "up", "down", "in", "out")
 
 
@@ -36,6 +45,8 @@ def move_after_overshoot(
     lexemes: Sequence[Lexeme], said: str, command: Command | None, turn: PastTurn | None
 ) -> Continuation | None:
     """Return the move that takes back half of the last change, if the instruction says that the change was too large.
+
+    After a zoom, "too far away" zooms in, and "too far" is asked about.
 
     Half of a magnification is its square root: after zooming in 4x, the camera zooms out 2x. None for other instructions, and if
     the last command did not change a single axis or not in the direction complained about.
@@ -50,7 +61,15 @@ def move_after_overshoot(
     if match is None or command is None or turn is None or (changed := _change(command, turn)) is None:
         return None
     ways = [way for way in _WAYS if match.has(way)]
-    if full_match(_OVERSHOOT, lexemes_of(turn.instruction)):
+    is_second = full_match(_OVERSHOOT, lexemes_of(turn.instruction)) is not None
+    if match.has("away"):  # the thing is too far away
+        if changed[0].axis != "zoom":
+            return None
+        return Continuation(changed[1].text if changed[0].way == "out" and not is_second else "zoom in")
+    may_be_distance = match.has("far") and any(x.word == "too" for x in lexemes) and not any(x.word in _WENT for x in lexemes)
+    if changed[0].axis == "zoom" and may_be_distance and not ways and (is_second or changed[0].way == "in"):
+        return Continuation(said, question=_FURTHER_OR_BACK)
+    if is_second:
         if full_match(_STILL, lexemes) or (ways and all(way == changed[0].reversed().way for way in ways)):
             return Continuation(changed[0].text)
         way, other = changed[0].way, changed[0].reversed().way

@@ -1,4 +1,4 @@
-"""Read a magnification without a verb that refers to the last zoom: "3x", "no, 3x", "make it 3x instead"."""
+"""Read a magnification without a verb that refers to the last zoom: "3x", "no, 3x", "make it 3x instead", "to 3x"."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from scope_ptz.planner.base import PastTurn
 
 _FACTOR = (
-    rf"(?P<editing>{EDITING})? (it|by|to|just|only|FILLER)* (?P<number>NUM) ((?P<factor>X)|PERCENT) "
+    rf"(?P<editing>{EDITING})? (it|by|(?P<to>to)|just|only|FILLER)* (?P<number>NUM) ((?P<factor>X)|PERCENT) "
     "(COMMA|INSTEAD|FILLER|STOP)*"
 )
 
@@ -26,7 +26,7 @@ def factor_for_last_zoom(lexemes: Sequence[Lexeme], command: Command, turn: Past
     """Return the zoom that a bare magnification asks for after a zoom; None for other instructions and after other commands.
 
     The magnification is relative to that before the last zoom: "3x" after "zoom in 2x" zooms in 3 times in all. After a zoom on a
-    thing, the camera keeps aiming at the thing.
+    thing, the camera keeps aiming at the thing. With "to", it is the magnification itself.
 
     Args:
         lexemes: The lexemes of the instruction.
@@ -37,6 +37,8 @@ def factor_for_last_zoom(lexemes: Sequence[Lexeme], command: Command, turn: Past
         return None
     number = match["number"][0].value
     said = f"{number:g} times"
+    if match.has("to") and match.has("factor") and number > 0 and _is_zoom(command.steps[0]):
+        return Continuation(f"zoom to {number:g}x", corrects=match.has("editing") and not isinstance(command.steps[0], ast.ZoomTo))
     if isinstance(command.steps[0], ast.ZoomTo):
         if not match.has("factor") or turn.start is None or number <= 0:
             return Continuation(said, question=FILLS_THE_VIEW) if match.has("editing") else None
@@ -49,6 +51,12 @@ def factor_for_last_zoom(lexemes: Sequence[Lexeme], command: Command, turn: Past
             return Continuation(said, question=f"Shall I zoom in {number:g}x, or zoom out {number:g}x?")
         return Continuation(SingleMove("zoom", "in", said).text, corrects=True)
     return Continuation(f"zoom to {number:g}x") if _is_zoom_to_value(command.steps[0]) else None
+
+
+def _is_zoom(step: ast.Step) -> bool:
+    """Return whether a step only changes the magnification, or zooms in on a thing."""
+    move = single_move((step,))
+    return isinstance(step, ast.ZoomTo) or (move is not None and move.axis == "zoom") or _is_zoom_to_value(step)
 
 
 def _is_zoom_to_value(step: ast.Step) -> bool:

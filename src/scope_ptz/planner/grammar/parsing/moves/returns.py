@@ -35,9 +35,8 @@ def return_step(lexemes: Sequence[Lexeme]) -> Step | None:
             if (match := full_match(f"{_VERB} {order} (GLUE|FILLER|AGAINWORD)*", lexemes)) is not None:
                 return Back(amount=_amount(match))
     if (sized := full_match(_TOWARDS_BY, lexemes)) is not None:
-        side = sized["way"][0]
-        sense = 1 if side.has("RIGHT", "UP") else -1
-        return Move((Turn("pan" if side.has("LEFT", "RIGHT") else "tilt", sense, Amount("degrees", sized["number"][0].value)),))
+        sense = 1 if sized["way"][0].has("RIGHT") else -1
+        return Move((Turn("pan", sense, Amount("degrees", sized["number"][0].value)),))
     if full_match(BACK_UP, lexemes) is None and (match := full_match(_TOWARDS, lexemes)) is not None:
         side = match["way"][0]
         return Back(turn=Turn("pan" if side.has("LEFT", "RIGHT") else "tilt", 1 if side.has("RIGHT", "UP") else -1))

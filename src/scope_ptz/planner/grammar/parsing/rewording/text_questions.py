@@ -72,7 +72,7 @@ QUESTIONS = (
     ),
     (r"(?<=\blook )right the way (?=a?round\b)", "all the way "),
     (r"\ball the way (?:a?round)(?: (?:us|you|here|the \w+))?(?=\W*$|,)", "all around"),
-    (r"(?<=\ball around),? (?:the|in a) (?:full|whole) (?:circle|turn)\b", ""),
+    (r"(?<=\ball around),? (?:the|in a) (?:full|whole) (?:circle|turn)\b", lambda match: "" if _asks(match.string) else match[0]),
     (r"\baround the (?:whole|entire) \w+(?=\W*$)", "all around"),
     (r"\b(?:the whole|the entire) (?:place|site|area), all around\b", "all around"),
     (r"^taking in the (?:whole|entire) (?:scene|area|site|place), ([^?,]+)(?:, or may i [^?]+)?\?*$", r"\1 in the whole scene?"),
@@ -133,6 +133,11 @@ QUESTIONS = (
     (r"\b(?:run|go) through (?:all )?the presets and check at each one (?=whether|if)", "at each preset, check "),
 )
 """Patterns with the words that replace them."""
+
+
+def _asks(text: str) -> bool:
+    """Return whether a text asks for what is seen, so that "all around" is where to look and no turn."""
+    return re.search(r"\?|\b(?:count|how many|tell|report|check|see if|whether|find|look for)\b", text, re.IGNORECASE) is not None
 
 
 def _about_topic(match: re.Match[str]) -> str:

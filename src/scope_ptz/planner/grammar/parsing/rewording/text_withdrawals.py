@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import re
 
+from scope_ptz.planner.grammar.lexing.lexer import lexemes_of
+from scope_ptz.planner.grammar.parsing.rewording.withdrawn_parts import depends_on_part_before
+
 _PICTURE = r"(?:pic|photo|picture|photograph|still|shot|snap|image)"
 _NO = r"(?:(?:scratch that|actually|no|nah|nope|wait|sorry|oh)[, ]+)*"
 _LEAVE_OUT = (
@@ -192,6 +195,9 @@ def without_part_left_out(text: str) -> str:
     kept = [(link, part) for link, part in parts if not pattern.match(part.strip())]
     if not kept or len(kept) != len(parts) - 1:
         return text
+    dropped = next(i for i, (_, part) in enumerate(parts) if pattern.match(part.strip()))
+    if any(depends_on_part_before(lexemes_of(part)) for _, part in parts[dropped + 1 :]):
+        return text  # "pan left 20, tilt up 5, undo, forget the tilt"
     only = re.sub(r"^(?:do )?the |^(?:go there|do that)$", "", (match["only"] or "").lower())
     if not any(only in part.lower() for _, part in kept):
         return text  # "pan left 20 and tilt up 10, no, forget the tilt, just go home": what remains is unclear

@@ -36,6 +36,15 @@ _SIGNALS = f"(?P<signal>({_SIGNAL}) (({_SIGNAL})|{_PAUSES.rstrip('*')})*)"
 _TAKING_BACK = tuple(
     rf"(?P<pause>({_ENDS})) {_PAUSES} {_SIGNALS}? (please)? {form} (please|FILLER)* (?=({_ENDS}|AND)|\Z)" for form in _FORMS
 )
+_FURTHER = rf"({_ENDS}|AND|OR|FILLER)+ (DET ({_ACTS})|({_ACTS}) (too|either|FILLER|ADVERB)* (({_ENDS})|\Z))"
+"""Another action that is taken back along with the first one: "forget the tilt and the pan"."""
+
+_DEPENDENT = (
+    "(FILLER|do|DOV|DOACT|CARRY|PRON|DET|in)* (AGAINWORD|SAMEAMOUNT|TWICE|THRICE|NUM X|REPEAT|UNDO|BACK|go_back|return|redo|"
+    "FRACTION|other|opposite|the_other_way|the_opposite_way)"
+)
+"""A part that has no meaning without the one before it."""
+
 _TURNS = {"PAN": ("PAN", "LEFT", "RIGHT"), "TILT": ("TILT", "UP", "DOWN")}
 _KINDS = ("PAN", "TILT", "ZOOM", "COUNT", "TRACK", "READ", "FIND", "PICTURE")
 _PICTURES = ("PICTURE", "SNAP")
@@ -63,10 +72,35 @@ def without_withdrawn_parts(said: Repaired) -> tuple[Repaired, Sequence[Lexeme]]
         kept = _without(before, fitting[0], is_act=_kind(match) != "") if len(fitting) == 1 else None
         is_only = match_start(f"({_ENDS}|FILLER)* (just|only)", after) is not None
         is_said_later = match.has("signal") or match.has("firm")
-        if kept is None or not is_said_later or (kept and is_only) or (not kept and not after) or search("|".join(MARKERS), before):
+        is_clear = is_said_later and not (kept and is_only) and (kept or after) and not search("|".join(MARKERS), before)
+        names_more = match_start(_FURTHER, after) is not None or _offers_choice(match)
+        if kept is None or not is_clear or names_more or _needs_what_is_dropped(said.lexemes, fitting[0], i, i + match.size):
             return said, said.lexemes[i + 1 : i + match.size]
         return without_text(said, _joined(kept, after)), ()
     return said, ()
+
+
+def _needs_what_is_dropped(lexemes: Sequence[Lexeme], dropped: _Part, first: int, last: int) -> bool:
+    """Return whether a part after a dropped one only repeats or reverses what came before it, such as "and again" or "undo".
+
+    Args:
+        lexemes: The lexemes of the instruction.
+        dropped: The part that is taken back.
+        first: The index of the first lexeme that takes it back.
+        last: The index after the last one.
+    """
+    parts = (part for part in _parts(lexemes) if part.first > dropped.last and not first <= part.first < last)
+    return any(depends_on_part_before(part.lexemes) for part in parts)
+
+
+def depends_on_part_before(lexemes: Sequence[Lexeme]) -> bool:
+    """Return whether a part of an instruction only repeats or reverses the one before it: "again", "twice", "undo"."""
+    return match_start(_DEPENDENT, lexemes) is not None
+
+
+def _offers_choice(match: Match) -> bool:
+    """Return whether the words that take something back name several things: "forget the tilt or the pan"."""
+    return match.has("object") and any(x.has("OR") for x in match["object"])
 
 
 def takes_back_unclearly(text: str, presets: tuple[str, ...]) -> bool:
