@@ -5,6 +5,91 @@ from __future__ import annotations
 import re
 
 _NUMBER = r"(?:\d+|ten|twelve|fifteen|twenty|thirty|forty|fifty|sixty|ninety)"
+_LAST_WORDS = (
+    # taken back
+    r"cancel",
+    r"nope",
+    r"psych",
+    r"no way",
+    r"rewind",
+    r"(?:i )?give up(?: on (?:that|it))?",
+    r"get out",
+    r"skip it",
+    r"as you were",
+    r"quit it",
+    r"(?:do )?no such thing",
+    r"(?:please )?refrain",
+    r"i beg you not to",
+    r"you can['’]?t do (?:that|it)",
+    r"(?:i|we) no longer want .+",
+    r"that(?: is|['’]s) not what (?:i|we) meant",
+    r"i said nothing",
+    r"consider it unsaid",
+    r"leave it be",
+    r"(?:i|we)(?: would|['’]d) leave it",
+    r"(?:it|that)(?: is|['’]s) fine as (?:it )?is",
+    r"(?:the plan|it) is off",
+    r"it['’]s off",
+    r"plans have changed",
+    r"(?:we|you) (?:don['’]t|do not) (?:have|need) to",
+    r"that won['’]t be necessary",
+    r"there(?: is|['’]s) no need",
+    r"(?:that|it) was (?:a typo|autocorrect|an accident)",
+    r"i didn['’]t mean (?:to )?(?:send|type|say) (?:that|this|it)",
+    r"i typed that by accident",
+    # stay
+    r"hands off(?: the camera)?",
+    r"keep the camera still",
+    r"(?:let us |let['’]s |we will |we['’]ll )?stay (?:here|where we are)(?: for now)?",
+    # changed without saying how
+    r"swap the numbers",
+    r"neither",
+    r"(?:just|only) the (?:first|second|last) one",
+    r"(?:the )?wrong way",
+    r"(?:the )?opposite(?: direction)?",
+    r"other direction",
+    r"i got my directions confused",
+    # forbidden, or up to somebody
+    r"\w+ (?:has )?(?:vetoed|refused)(?: it| that)?",
+    r"(?:(?:it|that|filming there)(?: is|['’]s) )?illegal",
+    r"which is forbidden",
+    r"(?:it|that) depends on .+",
+    r"let me (?:check|think)(?: about it)?(?: first)?",
+    r"it(?: is|['’]s) up to .+",
+    r"on my (?:mark|signal)",
+    r"(?:only )?after \w+ agrees",
+    r"provided (?:nobody|no one|everyone) .+",
+    r"not before .+",
+    # said to somebody else, or by somebody else
+    r"i (?:was|am)(?:n['’]t| not| only)? talking to .+",
+    r"(?:that|it) was for .+",
+    r"those were (?:his|her|their) words",
+    r"this is only a test",
+    r"(?:he|she|they) (?:told me|shouted|said)",
+    r"it says here",
+    r"as the saying goes",
+)
+"""Last sentences of an instruction that take its command back, forbid it, or leave open what is meant."""
+
+_FIRST_WORDS = (
+    r"(?:do not|don['’]t) execute this",
+    r"this is not a command",
+    r"don['’]t take this literally",
+    r"nothing may move",
+    r"the (?:label|manual|note) (?:reads|says)",
+    r"i dreamt",
+    r"the syntax is",
+    r"here is an example",
+    r"the following is",
+    r"yesterday i said",
+    r"as \w+ would say",
+    r"i doubt (?:that )?we should",
+    r"i['’]m not sure (?:that )?we should",
+    r"did i ask you to",
+    r"on my (?:signal|mark)",
+)
+"""First words of an instruction that only quotes, imagines or postpones a command."""
+
 _STATEMENTS = (
     re.compile(
         r"\b(?:nobody|no one|we|i|you|he|they)\b[^.;?!]{0,20} (?:are|is|am|was|were)(?: not|n['’]t)? allowed to\b"
@@ -38,6 +123,8 @@ _STATEMENTS = (
         r"|[,;] assuming\b",
         re.IGNORECASE,
     ),
+    re.compile(rf"[,.;?!–-] (?:(?:oh|ah|no|well|actually|sorry|please|but|and),? )*(?:{'|'.join(_LAST_WORDS)})\W*$", re.IGNORECASE),
+    re.compile(rf"^(?:{'|'.join(_FIRST_WORDS)})\b", re.IGNORECASE),
 )
 
 
