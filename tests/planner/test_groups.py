@@ -44,7 +44,7 @@ def test_the_other_of_two_is_the_opposite(instructions: tuple[str, ...], expecte
     ],
 )
 def test_the_other_of_two_differs_in_what_belongs_to_the_thing(taken: str, other: str) -> None:
-    assert other_of(Focus("dogs", 2, COUNT), taken) == other
+    assert other_of(Focus("dogs", 2, "count_objects"), taken) == other
 
 
 def test_the_other_of_two_that_an_answer_listed() -> None:

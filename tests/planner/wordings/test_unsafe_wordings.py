@@ -167,7 +167,6 @@ def test_every_pattern_compiles(patterns: tuple) -> None:  # type: ignore[type-a
         "pan left 20 degrees and tilt up 10 degrees. swap the numbers",
         "go to the yard. Bob vetoed it",
         "zoom in, which is forbidden",
-        "do not execute this. zoom in",
         "pan left 20 degrees. wrong way",
         "pan left 20 degrees, on my mark",
         "follow the truck. that depends on Bob",

@@ -72,7 +72,6 @@ _LAST_WORDS = (
 """Last sentences of an instruction that take its command back, forbid it, or leave open what is meant."""
 
 _FIRST_WORDS = (
-    r"(?:do not|don['’]t) execute this",
     r"this is not a command",
     r"don['’]t take this literally",
     r"nothing may move",
