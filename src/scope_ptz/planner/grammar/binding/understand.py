@@ -34,7 +34,7 @@ from scope_ptz.planner.grammar.consistency.check import (
 )
 from scope_ptz.planner.grammar.lexing.lexer import lexemes_of
 from scope_ptz.planner.grammar.parsing.instruction_parser import MAX_CHARS, Parsed, parse
-from scope_ptz.planner.grammar.parsing.remark_detection.shorter_versions import shorter_versions
+from scope_ptz.planner.grammar.parsing.remark_detection.shorter_versions import MAX_SHORTENED_CHARS, shorter_versions
 from scope_ptz.planner.grammar.parsing.remark_detection.versions import versions_without_remarks
 from scope_ptz.planner.grammar.parsing.rewording.plain_text import written_out
 from scope_ptz.planner.grammar.parsing.rewording.withdrawn_parts import takes_back_unclearly
@@ -120,7 +120,7 @@ def _read_without_remarks(
     happen", stands.
     """
     whole, presets = written_out(said), preset_names or ()
-    if takes_back_unclearly(whole, presets):
+    if len(whole) > MAX_SHORTENED_CHARS or takes_back_unclearly(whole, presets):
         return whole_text
     for shorter in shorter_versions(whole, presets):
         if (understanding := _read(shorter, preset_names, conversation)).steps:

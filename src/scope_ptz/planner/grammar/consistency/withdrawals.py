@@ -21,7 +21,7 @@ _LAST_WORDS = (
     r"(?:please )?refrain",
     r"i beg you not to",
     r"you can['’]?t do (?:that|it)",
-    r"(?:i|we) no longer want .+",
+    r"(?:i|we) no longer want .{1,60}",
     r"that(?: is|['’]s) not what (?:i|we) meant",
     r"i said nothing",
     r"consider it unsaid",
@@ -53,16 +53,16 @@ _LAST_WORDS = (
     r"\w+ (?:has )?(?:vetoed|refused)(?: it| that)?",
     r"(?:(?:it|that|filming there)(?: is|['’]s) )?illegal",
     r"which is forbidden",
-    r"(?:it|that) depends on .+",
+    r"(?:it|that) depends on .{1,60}",
     r"let me (?:check|think)(?: about it)?(?: first)?",
-    r"it(?: is|['’]s) up to .+",
+    r"it(?: is|['’]s) up to .{1,60}",
     r"on my (?:mark|signal)",
     r"(?:only )?after \w+ agrees",
-    r"provided (?:nobody|no one|everyone) .+",
-    r"not before .+",
+    r"provided (?:nobody|no one|everyone) .{1,60}",
+    r"not before .{1,60}",
     # said to somebody else, or by somebody else
-    r"i (?:was|am)(?:n['’]t| not| only)? talking to .+",
-    r"(?:that|it) was for .+",
+    r"i (?:was|am)(?:n['’]t| not| only)? talking to .{1,60}",
+    r"(?:that|it) was for .{1,60}",
     r"those were (?:his|her|their) words",
     r"this is only a test",
     r"(?:he|she|they) (?:told me|shouted|said)",
@@ -115,9 +115,9 @@ _STATEMENTS = (
         r"|(?:nobody|no one) (?:told|asked|wants|needs)(?: (?:you|me|us))?(?: to| for| it| that)?\W*$"
         r"|the camera (?:must|should|has to|is to) (?:stay|remain|be left)\b|the camera stays\b"
         r"|(?:we|you|i) (?:should|must|ought|need)(?:n['’]t| not)\W*$|(?:he|she|they) meant\b"
-        r"|(?:that|this|the) (?:order|request|command|instruction) (?:is|was|has been)\b|[^,.;?!]*\bwithdr[ae]w\w*"
+        r"|(?:that|this|the) (?:order|request|command|instruction) (?:is|was|has been)\b|[^,.;?!]{0,40}\bwithdr[ae]w\w*"
         r"|(?:just |only )?(?:imagine|pretend|suppose|assume) (?:i|we|that|you)\b|(?:bad|terrible|stupid) idea\W*$"
-        r"|[^,.;?!]*\b(?:permission for (?:it|that|this)|finger slipped|better (?:leave|not))\b"
+        r"|[^,.;?!]{0,40}\b(?:permission for (?:it|that|this)|finger slipped|better (?:leave|not))\b"
         r"|i(?: am|['’]m) (?:only|just) (?:testing|joking|kidding)\b)"
         r"|[,;] assuming\b",
         re.IGNORECASE,

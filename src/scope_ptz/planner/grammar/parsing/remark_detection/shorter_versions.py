@@ -28,7 +28,7 @@ from scope_ptz.planner.grammar.parsing.remark_detection.surrounding_remarks impo
     names_command,
 )
 
-_MAX_CHARS = 500  # longer texts are not shortened: each version is parsed again
+MAX_SHORTENED_CHARS = 500  # longer texts are not shortened: each version is parsed again
 _MAX_VERSIONS = 10
 _MIN_WORDS = 2
 
@@ -77,7 +77,7 @@ def shorter_versions(text: str, presets: tuple[str, ...]) -> Iterator[str]:
     take it back, without a preset, and without an amount after another number. What comes after a remark must begin like a request,
     and must not refer to the remark ("there is a van by the fence, follow it").
     """
-    if len(text) > _MAX_CHARS:
+    if len(text) > MAX_SHORTENED_CHARS:
         return
     if relay := _RELAYED_QUESTION.match(text):
         question = text[relay.end() :]

@@ -12,10 +12,15 @@ from scope_ptz.planner.grammar.parsing.remark_detection.features import features
 from scope_ptz.planner.grammar.parsing.remark_detection.model import remark_model
 from scope_ptz.planner.grammar.parsing.remark_detection.remark_forms import SUBJECT
 from scope_ptz.planner.grammar.parsing.remark_detection.segments import Segment, segments_of
-from scope_ptz.planner.grammar.parsing.remark_detection.shorter_versions import UNFINISHED, is_amount, opens_request, refers_back
+from scope_ptz.planner.grammar.parsing.remark_detection.shorter_versions import (
+    MAX_SHORTENED_CHARS,
+    UNFINISHED,
+    is_amount,
+    opens_request,
+    refers_back,
+)
 from scope_ptz.planner.grammar.parsing.remark_detection.surrounding_remarks import AT_AN_END, WITHDRAWAL
 
-_MAX_CHARS = 500  # longer texts are not shortened: each version is parsed again
 _MAX_SEGMENTS = 12
 _MAX_VERSIONS = 8
 _MIN_LOG_ODDS = 0.0
@@ -56,7 +61,7 @@ def versions_without_remarks(text: str, presets: tuple[str, ...]) -> Iterator[st
 
     What is kept must be complete, and must not refer to what was left out ("there is a van by the fence, follow it").
     """
-    segments = segments_of(text) if len(text) <= _MAX_CHARS else ()
+    segments = segments_of(text) if len(text) <= MAX_SHORTENED_CHARS else ()
     if not 1 < len(segments) <= _MAX_SEGMENTS:
         return
     log_odds = {
