@@ -285,7 +285,7 @@ def concepts_of(instance: SceneInstance | SceneActor) -> frozenset[str]:
 
 
 _ALSO_SEEN_AS = {"dock light": "traffic light"}
-"""Other concepts of which things look like one: a light that shows drivers red or green is a traffic light to whoever sees it."""
+"""Other concepts of which things look like one: a light that shows drivers red or green is taken for a traffic light."""
 
 
 def _world_box(instance: SceneInstance | SceneActor, time_s: float) -> tuple[Floats, Floats]:

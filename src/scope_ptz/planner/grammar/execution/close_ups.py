@@ -67,7 +67,7 @@ class CloseUpSteps(RunState):
             self._note(_WENT_BACK)
 
     def _may_widen(self) -> bool:
-        """Return whether the camera is at a close-up, and may leave it without being told to.
+        """Return whether the camera is at a close-up, and may leave it without a command.
 
         A real camera does not move for a reason that the user has not given.
         """

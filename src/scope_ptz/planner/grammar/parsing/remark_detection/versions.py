@@ -29,7 +29,7 @@ _MIN_STATEMENT_WORDS = 4  # shorter statements may be about what was said before
 
 _NEGATED_STATEMENT = re.compile(
     rf"^(?:{SUBJECT})\b(?! (?:don['’]?t|do not|didn['’]?t) (?:want|need|mean))"
-    r"(?P<rest>.*?\b(?:not|never|\w+n['’]t|cannot))\b",
+    r".*?\b(?:not|never|\w+n['’]t|cannot)\b",
     re.IGNORECASE,
 )
 """A statement with a negation, which forbids nothing: "they haven't signed the form"."""
