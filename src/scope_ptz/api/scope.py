@@ -53,7 +53,7 @@ class Scope:
         >>> [call.name for call in run.calls]
         ['adjust_ptz', 'count_objects']
         >>> moved.pose.pan_deg, cones.complete
-        (8.0, True)
+        (8.0, False)
     """
 
     def __init__(self, options: SessionOptions) -> None:
