@@ -14,6 +14,8 @@ from scope_ptz.planner.grammar.lexing.lexicon import known_words, spelling_lists
 
 _MIN_CHARS = 5  # in shorter words, only exchanged, doubled and missing letters count as typing errors
 _MIN_SHORT_CHARS = 3
+_MIN_VOWEL_CHARS = 7  # in shorter words, another vowel often makes another word
+_VOWELS = frozenset("aeiou")
 _MIN_NOUN_CHARS = 6  # shorter words that nobody knows may be names
 
 
@@ -55,9 +57,9 @@ def with_whole_ending(word: str) -> str:
 def corrected_noun(word: str) -> str:
     """Return the word that a misspelt noun or adjective stands for.
 
-    It is the only noun for a kind of thing that perception knows with a letter more or less, or with two letters swapped
-    ("exavator"), or the only English noun or adjective that results from swapping two adjacent letters or doubling one. Known
-    words, and words that could be corrected in more than one way, are returned unchanged.
+    It is the only noun for a kind of thing that perception knows with a letter more or less, with two letters swapped ("exavator"),
+    or with another vowel ("ambulence"), or the only English noun or adjective that results from swapping two adjacent letters or
+    doubling one. Known words, and words that could be corrected in more than one way, are returned unchanged.
     """
     if is_english(word) or parts_of_speech(word) or verb_form(word) is not None:
         return word
@@ -72,8 +74,15 @@ def corrected_noun(word: str) -> str:
 
 
 def _differs_by_a_slip(word: str, noun: str) -> bool:
-    """Return whether a letter is missing, added or swapped. With another letter, it may be another word: "shunter", "shutter"."""
-    return within_one_edit(word, noun) and (len(word) != len(noun) or sorted(word) == sorted(noun))
+    """Return whether a letter is missing, added or swapped, or a vowel is another one: "ambulence".
+
+    With another consonant, it may be another word: "shunter", "shutter".
+    """
+    if not within_one_edit(word, noun):
+        return False
+    differing = {pair for pair in zip(word, noun, strict=False) if pair[0] != pair[1]}
+    is_wrong_vowel = len(differing) == 1 and all(letter in _VOWELS for pair in differing for letter in pair)
+    return len(word) != len(noun) or sorted(word) == sorted(noun) or (len(word) >= _MIN_VOWEL_CHARS and is_wrong_vowel)
 
 
 @lru_cache(maxsize=1)

@@ -54,7 +54,7 @@ from scope_ptz.planner.grammar.parsing.parts.preset_refs import (
     without_inner_place,
 )
 from scope_ptz.planner.grammar.parsing.parts.questions import is_question
-from scope_ptz.planner.grammar.parsing.parts.scopes import split_leading_place, split_trailing_place, without_repetitions
+from scope_ptz.planner.grammar.parsing.parts.scopes import scope_of, split_leading_place, split_trailing_place, without_repetitions
 from scope_ptz.planner.grammar.parsing.parts.statements import is_only_noun
 
 if TYPE_CHECKING:
@@ -346,6 +346,8 @@ class Reader:
         view: View | None = (
             "full" if any(x.has("FULL") for x in lexemes) else "current" if any(x.has("NOW") for x in lexemes) else None
         )
+        if (only := scope_of(lexemes)) is not None:
+            return (Rescope(only),)  # "count the vents, current view only"
         scoping = ("NOW", "FULL", "FILLER", "PREP", "GLUE", "AND", "NOT", "NEGATED")
         if view and all(x.has(*scoping) or x.word in {"consider", "include", "cover", "mean"} for x in lexemes):
             return (Forbid() if any(x.has("NOT", "NEGATED") for x in lexemes) else Rescope(view),)

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from scope_ptz.english import COLOURS
+from scope_ptz.english import COLOURS, plural
 from scope_ptz.planner.grammar.instruction_tree import (
     AtPlaces,
     BeforeAfter,
@@ -162,7 +162,7 @@ def _preset_comparison(source: Source, lexemes: Sequence[Lexeme]) -> Step | None
             places = places_of(source, match["places"])
         else:
             places = ()
-        thing = thing_of(source, trimmed(match["thing"], "VISIBLE", "NOW"))
+        thing = _counted_thing(source, trimmed(match["thing"], "VISIBLE", "NOW"))
         if places is None or thing is None or any(x.has("COMMA") for x in match["thing"]):
             continue
         go = bool(lexemes[0].has("SWITCH", "CARRY") and not lexemes[0].has("HAVEV"))
@@ -186,14 +186,26 @@ def _preset_comparison(source: Source, lexemes: Sequence[Lexeme]) -> Step | None
     return None
 
 
+_COUNT_OF = "(count|counts|numbers|total|totals|tally|tallies)"
+
+
+def _counted_thing(source: Source, lexemes: Sequence[Lexeme]) -> Thing | None:
+    """Return "pedestrians" for "pedestrian count"; otherwise the thing that lexemes describe."""
+    match = full_match(f"(?P<thing>_+) {_COUNT_OF}", lexemes)
+    if match is None:
+        return thing_of(source, lexemes)
+    thing = thing_of(source, match["thing"])
+    return replace(thing, text=plural(thing.text)) if thing is not None else None
+
+
 def _same_thing_at_two_presets(source: Source, lexemes: Sequence[Lexeme]) -> Step | tuple[Step, ...] | None:
     """Read "compare vans at the gate with vans in the yard"."""
     head = r"(COMPARE (DET|COUNTNOUN)*|(WHQ BE)? (DET)? difference (in|between) (DET|COUNTNOUN)*)"
-    second = r"(with|to|AND|against) (DET|those|COUNTNOUN)* (?P<again>_+?)?? (at|in|on) (?P<other>_+)"
-    match = full_match(rf"{_SKIP} {head} (?P<thing>_+?) (at|in|on) (?P<one>_+?) {second}", lexemes)
+    second = r"(with|to|AND|against) (DET|those|COUNTNOUN|one|that)* (?P<again>_+?)?? (at|in|on) (?P<other>_+)"
+    match = full_match(rf"{_SKIP} {head} (?P<thing>_+?) (at|in|on|for) (?P<one>_+?) {second}", lexemes)
     if not match:
         return None
-    thing, places = thing_of(source, match["thing"]), (place_of(source, match["one"]), place_of(source, match["other"]))
+    thing, places = _counted_thing(source, match["thing"]), (place_of(source, match["one"]), place_of(source, match["other"]))
     again = thing_of(source, match["again"]) if match.has("again") else thing
     if thing is None or again is None or not places[0] or not places[1]:
         return None

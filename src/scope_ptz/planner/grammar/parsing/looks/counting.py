@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from scope_ptz.english import is_plural
-from scope_ptz.english.grammar.lexicon import lexicon
 from scope_ptz.english.grammar.parts_of_speech import verb_form
 from scope_ptz.english.grammar.questions.recognition import looks_like_description
 from scope_ptz.planner.grammar.instruction_tree import (
@@ -20,6 +19,7 @@ from scope_ptz.planner.grammar.instruction_tree import (
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 from scope_ptz.planner.grammar.lexing.morphology import verb_forms
 from scope_ptz.planner.grammar.parsing.calculations import without_sum
+from scope_ptz.planner.grammar.parsing.looks.counted_phrases import without_presence
 from scope_ptz.planner.grammar.parsing.parts.clause import ME, SKIP, Source, text_of, trimmed
 from scope_ptz.planner.grammar.parsing.parts.noun_phrases import (
     is_noun,
@@ -28,7 +28,7 @@ from scope_ptz.planner.grammar.parsing.parts.noun_phrases import (
     things_of,
     without_function_words,
 )
-from scope_ptz.planner.grammar.parsing.parts.patterns import Match, full_match, match_start, search
+from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start, search
 from scope_ptz.planner.grammar.parsing.parts.preset_refs import place_of, places_of
 from scope_ptz.planner.grammar.parsing.parts.scopes import has_full_scope, without_view
 
@@ -51,10 +51,11 @@ _SEEING = (
 _READING = "(can|could) SELF (ADVERB|FILLER)* READ (VISIBLE|FILLER|NOW|out|there)*"
 
 
-_HAVING = "(DOV SELF (HAVEV|have)|HAVEV SELF (got)?|BE there|there BE)"
-_BEING_THERE = "standing|sitting|lying|waiting"
-"""Postures that only say that something is there: "how many trailers do we have standing here?"."""
-
+_SUBJECTS = frozenset({"we", "i", "you", "they", "he", "she"})
+_WRITTEN = frozenset({
+    "words", "letters", "numbers", "digits", "figures", "characters", "names", "lines", "plates", "registrations", "prices",
+    "labels",
+})  # fmt: skip
 _IN_ALL = "in_total|in total|altogether|in_all|in all|overall"
 
 
@@ -97,12 +98,15 @@ def count_step(source: Source, lexemes: Sequence[Lexeme], view: View | None) -> 
     ):
         if match["how"][0].word in {"how much", "how_much"} and match["rest"][0].word == "of":
             return None  # "how much of the blade is iced" asks for a proportion
-        if full_match(f"_+ {_READING}", match["rest"]):
+        legible = full_match(f"(?P<thing>_+) {_READING}", match["rest"])
+        if legible is not None and not _is_made_out(legible["thing"], match["rest"]):
             return Ask(f"How many {text_of(source, match['rest'])}?", view)  # only perception knows which text is legible
         return _counted(source, match["rest"], view, lexemes, match["how"][0])
     if full_match(rf"{SKIP} HOWMANY {SKIP}", lexemes):
         return Count((Thing(),), view)
-    if match := full_match(rf"{SKIP} ({_LOOKING}|{ME}|WHQ BE|DET|{_KIND_OF_COUNT})* COUNTNOUN (DET|all)? (?P<rest>_+)", lexemes):
+    if match := full_match(
+        rf"{SKIP} ({_LOOKING}|{ME}|WHQ BE|DET|{_KIND_OF_COUNT})* COUNTNOUN (me|us)? (EVERY|DET|all)? (?P<rest>_+)", lexemes
+    ):
         return _counted(source, match["rest"], view, lexemes, None)
     if match := full_match(
         rf"{SKIP} (do|TAKE|CARRY)? {ME} DET? (?P<thing>FREE{{1,2}}) (count|headcount) (of)? (VISIBLE|FILLER)*", lexemes
@@ -123,6 +127,11 @@ def count_step(source: Source, lexemes: Sequence[Lexeme], view: View | None) -> 
             return None
         return _counted(source, match["rest"], view, lexemes, None)
     return None
+
+
+def _is_made_out(things: Sequence[Lexeme], lexemes: Sequence[Lexeme]) -> bool:
+    """Return whether things other than writing are made out: "wagons can you make out", unlike "words can you make out"."""
+    return any(x.word == "make_out" for x in lexemes) and things[-1].word not in _WRITTEN
 
 
 def _counted(
@@ -148,7 +157,8 @@ def _counted(
         rest = rest[:-1]
     if (until_now := full_match("(?P<thing>_+) so far", rest)) is not None:
         rest = until_now["thing"]  # "how many vans are there so far?"
-    rest, inner = without_view(trimmed(without_sum(rest), "FILLER", "COMMA", "AMOUNTISH"))
+    source, rest = without_presence(source, trimmed(without_sum(rest), "FILLER", "COMMA", "AMOUNTISH"))
+    rest, inner = without_view(rest)
     view = view or inner
     if full_match(
         r"of? (of them|PRON|of those|more|there|BE|VISIBLE|SELF|can|SEE|now|NOW|are|again|HAVEV|got|have)*", rest
@@ -161,7 +171,7 @@ def _counted(
         verb = acting["verb"][0].word
         if verb_form(verb) == "base" and is_plural(acting["thing"][-1].word):
             return Count((Thing(f"{text_of(source, acting['thing'])} {verb_forms(verb)['ing'][0]}"),), view)
-    if match := _with_posture(rest) or full_match(
+    if match := full_match(
         rf"(?P<thing>_+?) {_SEEING}+ (VISIBLE|FILLER|FULL|NOW|there|altogether|present|out there|out|INTURN)*", rest
     ):
         things = things_of(source, match["thing"])
@@ -176,13 +186,6 @@ def _counted(
     if things := things_of(source, rest):
         return Count(things, view)
     return None
-
-
-def _with_posture(rest: Sequence[Lexeme]) -> Match | None:
-    """Return the match of "trailers do we have standing here", in which the posture of a thing only says that it is there."""
-    match = full_match(rf"(?P<thing>_+?) {_HAVING} ({_BEING_THERE}) (VISIBLE|FILLER|NOW|there)*", rest)
-    concept = lexicon().concept(match["thing"][-1].word) if match is not None else None
-    return match if concept is not None and "person" not in lexicon().kinds(concept) else None
 
 
 def _share_of_last(source: Source, rest: Sequence[Lexeme]) -> Thing | None:
@@ -212,7 +215,7 @@ def _count_with_predicate(source: Source, rest: Sequence[Lexeme], view: View | N
     match = full_match(
         (
             r"(?P<thing>_+?) (?P<verb>(can SELF SEE|do SELF SEE|BE there|BE VISIBLE|BE|HAVEV|do|does|DOV)) "
-            r"(?P<not>not)? (have|wear|be)? (?P<rest>_+)"
+            r"(?P<not>not)? (?P<main>have|wear|be)? (?P<rest>_+)"
         ),
         rest,
     )
@@ -227,8 +230,8 @@ def _count_with_predicate(source: Source, rest: Sequence[Lexeme], view: View | N
     negated = match.has("not")
     if any(x.has("PAN", "TILT", "ZOOM", "IF", "DEG", "THEN") for x in words) or search("(COMMA|AND) WHQ", words):
         return None
-    if words and words[0].word in {"we", "i", "you"}:
-        return None
+    if words and (words[0].word in _SUBJECTS or (verb[0].has("DOV") and words[0].has("DET") and not match.has("main"))):
+        return None  # "how many gates did they leave open" asks what somebody did
     if not thing.text and not negated and words and is_plural(words[-1].word) and is_noun_phrase(words):
         return Count((Thing(text),), view)  # "how many of them are reefers"
     if not thing.text:

@@ -3,14 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
-from scope_ptz.planner.grammar.instruction_tree import (
-    Ask,
-    Count,
-    Step,
-    Sweep,
-)
+from scope_ptz.english.grammar.lexicon import lexicon
+from scope_ptz.planner.grammar.instruction_tree import Ask, Count, Step, Sweep
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 from scope_ptz.planner.grammar.parsing.looks.asking import question_step
 from scope_ptz.planner.grammar.parsing.looks.closeups import close_up_step, read_step, track_step
@@ -21,8 +16,14 @@ from scope_ptz.planner.grammar.parsing.parts.noun_phrases import thing_of, thing
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match
 from scope_ptz.planner.grammar.parsing.parts.scopes import has_full_scope, without_view
 
-if TYPE_CHECKING:
-    pass
+_ALL_AROUND = (
+    "look_all_around|look_all_round|have_a_look_all_around|look_all_the_way_round|look_all_the_way_around|check_all_around|"
+    "sweep|scan|survey"
+)
+"""Commands to look at the whole scene, after which a site may be named."""
+
+_SITES = frozenset({None, "ground", "field", "road", "building", "grass"})
+"""The kinds of things that are no object to look for: unknown nouns ("the stadium"), and surfaces that fill the scene."""
 
 
 def look_step(source: Source, lexemes: Sequence[Lexeme], *, has_question_mark: bool) -> Step | tuple[Step, ...] | None:
@@ -75,6 +76,9 @@ def _sweep(source: Source, lexemes: Sequence[Lexeme]) -> Step | tuple[Step, ...]
         and not any(x.has("LEFT", "RIGHT", "UP", "DOWN", "HORIZON") or (x.has("TURN") and not x.has("SCAN")) for x in lexemes)
     ):
         return Sweep(turn=any(x.word in {"do_a_360", "do_a_full_360", "do_a_full_circle"} for x in lexemes))
+    around = full_match(rf"{SKIP} ({_ALL_AROUND}) (in|on|over|across)? DET (?P<site>FREE{{1,2}}) (FILLER)*", lexemes)
+    if around is not None and lexicon().concept(around["site"][-1].word) in _SITES:
+        return Sweep()  # "have a look all around the ground"
     match = full_match(
         (
             rf"{SKIP} (SCAN|SCAN-ING) (?P<where>(DET|FULL|VIEWNOUN|AROUND|area|site|through|of|over|place)*) (for|to "

@@ -26,7 +26,15 @@ _FUNCTION_CLASSES = (
     "SELF", "MODAL", "DET", "PREP", "BE", "DOV", "HAVEV", "ADVERB", "FILLER", "COMMA", "PRON", "LITTLE", "LOT", "WRAPPER",
     "LEADFILLER", "IF", "DOACT", "GLUE",
 )  # fmt: skip
+_FOR_WHOM = (
+    "for (DET|my|our|SELF)* (FREE|DET)? (survey|report|study|log|logbook|records|audit|inventory|stocktake|meeting|paperwork|"
+    "newsletter|website|boss|manager|client|police|insurance|statistics|file|girl|lad|lads|team|office|council|foreman|supervisor|handover|"
+    "sheet|form|rota|ledger|register|spreadsheet|schedule|invoice|books|minutes)"
+)
+"""The recipient or purpose of a command: "for the parking survey"."""
+
 _OPENERS = "|".join((
+    f"{_FOR_WHOM} COMMA? (?=WRAPPER|COUNT|COUNTNOUN|HOWMANY|SELF (need|want))",
     f"({_I_WOULD}|it (MODAL|BE)) (be|BE)? {_VERY} ({GLAD}|good|nice|helpful|great|lovely|useful) ({_IF_YOU_WOULD}|if SELF)",
     f"{_I_WOULD} appreciate (it|this)? {_VERY} ({_IF_YOU_WOULD}|if SELF)",
     f"{_I_WOULD} {_VERY} (appreciate|welcome) {_VERY} (?=DET|NUM|PICTURE)",
@@ -77,12 +85,6 @@ _WITH_OBJECT = "(in|on|onto|upon|at|to|into|towards|over)+ (all|both|each|of)* P
 _BRIEF = "(FILLER|COMMA)* (if)? SELF (may|MODAL) (FILLER)*|like DET good (FREE)|in fact|eh"
 """Polite and empty phrases without a word of courtesy: "if I may", "like a good man"."""
 
-
-_FOR_WHOM = (
-    "for (DET|my|our|SELF)* (FREE|DET)? (survey|report|study|log|logbook|records|audit|inventory|stocktake|meeting|paperwork|"
-    "newsletter|website|boss|manager|client|police|insurance|statistics|file|girl|lad|lads|team|office|council|foreman|supervisor|handover)"
-)
-"""The recipient or purpose of a command: "for the parking survey"."""
 
 _MEANT_IN_QUESTIONS = frozenset({
     "today", "tonight", "morning", "evening", "afternoon", "good", "great", "nice", "lovely", "perfect", "excellent",

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from scope_ptz.english import is_plural
 from scope_ptz.english.grammar.lexicon import lexicon
 from scope_ptz.planner.grammar.instruction_tree import PresetRef
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
@@ -35,7 +36,22 @@ _TIMES = (
     r"(COMMA)? (for)? (?P<times>(?P<number>NUM) X(?! (DET|as|ASCLOSE|ZOOMNOUN|ZOOM|IN|OUT|more|further|"
     r"further_in))|(?P<twice>twice)|(?P<thrice>thrice)|X (?P<number2>NUM)) (INTURN|FILLER)*"
 )
+_TERSE_PLACE = (
+    "(FILLER)* (COUNT|HOWMANY|(DET)? COUNTNOUN) (DET)? (?P<things>FREE{1,3} (AND FREE{1,3})?) "
+    "(?P<place>PRESET ((COMMA|AND)+ PRESET)*)"
+)
+"""A count and its presets without a preposition: "count trucks lane 3"."""
+
 _OVER_THE_WHOLE = "(?P<body>_+?) COMMA? (over|across|throughout|around|all_over) the (whole|entire) (?P<site>FREE{1,2}) (FILLER)*"
+_ALL_OF_IT = "((for|over|across|of|around|within|throughout)? FULL (AROUND|VISIBLE|only)*)"
+"""The whole scene: "for the whole scene", "the whole place around"."""
+
+_THIS_VIEW = (
+    "((within|in|inside|from|on|for)? (the|this|your)? (current|present) (VIEWNOUN|PICTURE) (only|alone|FILLER)*|NOW (only|alone))"
+)
+"""The current view: "within the present field of view", "current view only"."""
+
+_FOR_SCOPE = f"(?P<body>_+?) (fall|falls)? COMMA? ((?P<full>{_ALL_OF_IT})|(?P<current>{_THIS_VIEW}))"
 MAX_TIMES = 50
 SECONDS = (
     r"((?P<a>DET|about|AMOUNTISH|interval of|period of|next|full|whole|good|solid|LIMIT)* "
@@ -52,6 +68,8 @@ def without_view(lexemes: Sequence[Lexeme]) -> tuple[tuple[Lexeme, ...], View | 
         "(?P<body>_+?) COMMA? (AIM-ING|SCAN-ING|looking|checking) (over|across|through)* (?P<scope>FULL)", lexemes
     ):
         lexemes = (*seen["body"], *seen["scope"])  # "the number of flags, looking over the whole area"
+    if (scoped := full_match(_FOR_SCOPE, lexemes)) is not None and not _needs_more(scoped["body"]):
+        lexemes, view = trimmed(scoped["body"], *_TRIVIAL), "full" if scoped.has("full") else "current"
     if all_around := full_match("(?P<body>_+) COMMA SCAN-ING", lexemes):
         lexemes, view = tuple(all_around["body"]), "full"  # "how many trailers, looking all around?"
     if (whole := full_match(_OVER_THE_WHOLE, lexemes)) is not None and lexicon().concept(whole["site"][-1].word) is None:
@@ -74,6 +92,17 @@ def without_view(lexemes: Sequence[Lexeme]) -> tuple[tuple[Lexeme, ...], View | 
                 lexemes = trimmed(lexemes[:-1] if end else lexemes[1:], *_TRIVIAL)
                 break
     return lexemes, view
+
+
+def _needs_more(lexemes: Sequence[Lexeme]) -> bool:
+    """Return whether lexemes cannot stand without the words after them: "what is", "count the"."""
+    return lexemes[-1].has("PREP", "DET", "WHQ") or (lexemes[-1].has("BE") and lexemes[0].has("WHQ", "BE", "TELL"))
+
+
+def scope_of(lexemes: Sequence[Lexeme]) -> View | None:
+    """Return the view if lexemes only say where to look: "the whole place around", "current view only"; None for other words."""
+    lexemes = trimmed(lexemes, *_TRIVIAL)
+    return "full" if full_match(_ALL_OF_IT, lexemes) else "current" if full_match(_THIS_VIEW, lexemes) else None
 
 
 def has_full_scope(lexemes: Sequence[Lexeme]) -> bool:
@@ -106,6 +135,8 @@ def _is_part_of_noun(rest: Sequence[Lexeme]) -> bool:
 def split_trailing_place(source: Source, lexemes: Sequence[Lexeme]) -> tuple[tuple[Lexeme, ...], tuple[PresetRef, ...] | None]:
     """Return a clause without the preset that ends it ("count the cars at the gate"), and that preset, or None."""
     lexemes = _without_present_time(trimmed(lexemes, *_TRIVIAL))
+    if (terse := full_match(_TERSE_PLACE, lexemes)) is not None and is_plural(terse["things"][-1].word):
+        return trimmed(lexemes[: len(lexemes) - len(terse["place"])], "COMMA"), places_of(source, terse["place"])
     for size in range(min(len(lexemes) - 1, 14), 1, -1):
         tail = lexemes[len(lexemes) - size :]
         before = lexemes[len(lexemes) - size - 1]

@@ -75,6 +75,7 @@ _HARMLESS = re.compile(
     r"|\b\w+ (?:is|are|was|were|keeps?) asking(?: me| us)?(?: about (?:it|them|this|that))?\W*$"
     r"|\b(?:i|we) (?:can['’]?t|cannot|could not|couldn['’]?t) tell(?: from here)? (?:if|whether|what|which|who)\b"
     r"|\bi (?:just )?want(?:ed)? the (?:whole )?(?:lot|thing|works)\b|\bunder the camera\b"
+    r"|\b(?:won['’]?t|will not|doesn['’]?t|never) stop (?!pan|tilt|zoom|turn|mov|track|follow|point)\w+ing\b"
     r"|\bshould (?:arrive|turn up|come|land|be there)\b|\bshould be (?:bringing|coming|arriving|landing|starting"
     r"|finishing|done|ready)\b"
     r"|\b(?:i|we) (?:don't|do not) want to (?:miss|lose|be late|upset|wake|disturb)\b"

@@ -36,6 +36,8 @@ _COUNT_AT_LIST = (
 )
 """A count, and the list of places for it: "numbers of people: main lift, ticket office, bus bay"."""
 
+_AT_EACH = frozenset({"at_each", "at_each_one", "at_each_of_them", "at_every_one", "at_each_place", "at_each_stop"})
+
 _WANTED_PICTURE = (
     "(FILLER)* ((DET)? FREE{1,2} (wants|needs|WRAPPER)|WRAPPER|SELF (want|need)) (DET|ANY|NUM|SEVERAL)? PICTURE of _+?"
     " PREP? (DET)? (?P<place>PRESET) PRESETNOUN? STOP (FILLER)* (?P<go>CARRY|SWITCH) (over|ADVERB|FILLER)* there (COMMA|AND|THEN)*"
@@ -48,6 +50,12 @@ _FOLLOWED_AT_PLACE = (
 )
 """A thing to follow at a preset, then a duration: "follow the van at the gate for 20 seconds"."""
 
+_ORDERED_COUNT = (
+    "(?P<verb>return|run|perform|execute|produce|compute|calculate|obtain|carry_out|make) (DET)? (FREE|total|full|quick)? "
+    "(COUNTNOUN|head_count|headcount)"
+)
+"""A verb that orders a count: "return the number of vans", "run a count of flags"."""
+
 _CHECKED_AT_PLACE = (
     "(FILLER|COMMA)* (TELL|SEE) (me|us)? (?P<place>(at|in) (EVERY (of)? (DET)? PRESETNOUN|(DET)? PRESET PRESETNOUN?))"
     " (whether|if) _"
@@ -59,7 +67,7 @@ def reworded(lexemes: Sequence[Lexeme]) -> tuple[Lexeme, ...]:
     """Replace some wordings: "I want to see the yard" becomes "let me see the yard", and "return left" becomes "go back left"."""
     lexemes = _with_place_first(_without_in_steps_of(with_compound_nouns(lexemes)))
     lexemes = _without_yes_or_no(with_presets_reworded(lexemes))
-    lexemes = _count_at_list(_picture_wanted_first(_at_places_first(lexemes)))
+    lexemes = _told_count(_count_at_list(_picture_wanted_first(_at_places_first(lexemes))))
     out: list[Lexeme] = []
     i = 0
     while i < len(lexemes):
@@ -119,6 +127,12 @@ def _count_at_list(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
     return lexemes if match is None else [x.reworded("at", "PREP", "GLUE") if x is match["end"][0] else x for x in lexemes]
 
 
+def _told_count(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
+    """Return lexemes with "tell the number of vans" in place of "return the number of vans"."""
+    match = search(_ORDERED_COUNT, lexemes)
+    return lexemes if match is None else [x.reworded("tell", "TELL", "LISTING") if x is match["verb"][0] else x for x in lexemes]
+
+
 def _picture_wanted_first(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
     """Return lexemes with "go to the gate, take one" for "he wants a picture of a van at the gate. Go there, take one"."""
     match = match_start(_WANTED_PICTURE, lexemes)
@@ -154,7 +168,7 @@ def _replacement(before: Sequence[Lexeme], lexeme: Lexeme, after: Lexeme | None)
         return []
     if lexeme.word in {"last", "lastly"} and last is not None and last.has("COMMA", "AND") and _is_place_next(after):
         return [lexeme.reworded("finally", "FIRSTLY")]  # "first the gate, then the yard, last the dock"
-    if lexeme.word == "at_each" and last is not None and last.has("BE") and _counts_on_tour(before):
+    if lexeme.word in _AT_EACH and last is not None and last.has("BE") and _counts_on_tour(before):
         return [lexeme.reworded("there", "ADVERB", "GLUE", "VISIBLE")]  # "do a lap of the presets and tell me how many are at each"
     if lexeme.word == "and_please" and after is not None and after.has("DOV", "NEGATED"):
         return [lexeme.reworded("and", "AND", "GLUE"), lexeme.reworded("please", "FILLER")]  # "... and please don't follow it"

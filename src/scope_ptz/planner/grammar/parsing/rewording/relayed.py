@@ -11,7 +11,8 @@ from scope_ptz.planner.grammar.parsing.rewording.stated_places import AUXILIARIE
 _MAX_LEXEMES = 80  # longer texts are parsed as they are, so that parsing stays fast
 _ASKS = (
     f"{OTHERS} {AUXILIARIES} (asking|asks|ask|asked|wondering|wonders|wants_to_know|needs_to_know|would_like_to_know)|"
-    "(the_boss_wants|they_want|he_wants|she_wants) to know"
+    "(the_boss_wants|they_want|he_wants|she_wants) to know|"
+    "SELF HAVEV (got|had)? DET FREE{1,3} (asking|wondering) (?!SELF? WHQ to)"
 )
 _QUESTION = f"(FILLER|COMMA)* ({_ASKS}) (me|us|SELF|FILLER)* (?=IF|WHQ|HOWMANY|whether|how|BE there)"
 """Someone asks a question: "dispatch is asking how many trucks are at the gate"."""

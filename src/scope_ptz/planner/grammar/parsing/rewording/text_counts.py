@@ -49,7 +49,7 @@ COUNTS = (
     (r"^(.*\b(?:count|how many)\b.*)[,.;] i (?:just |only )?want(?:ed)? to know how many [\w ]+\W*$", r"\1"),
     (
         r"\b(how m[ae]ny [\w ]+?) (?:have|has) (?:arrived|got in|turned up|come in|gathered|shown up)\b"
-        r"(?: so far| already| by now)?",
+        r"(?: so far| already| by now| today| tonight| this (?:morning|afternoon|evening))?",
         r"\1 are there",
     ),
     (r"\b(how m[ae]ny [\w ]+?) are left\b", r"\1 are there"),
@@ -68,7 +68,11 @@ COUNTS = (
         r"|minute)(?=[?.!]*$)",
         r"\1",
     ),
-    (r",? (?:a )?(?:full )?360(?: degrees?)?(?: view| sweep| scan| scene)\W*$", " all around"),
+    (
+        r",? (?:in |over |across |for )?(?:an? |the )?(?:full |whole |entire |complete )?360[ -]?(?:degrees? )?"
+        r"(?:view|sweep|scan|scene)\W*$",
+        " all around",
+    ),
     (
         r",? (?:and )?not (?:just|only) (?:in |at |on )?(?:this|that) (?:part|bit|area|side|corner|section|end)"
         r"(?: of (?:it|the (?:picture|scene|view|frame|shot)))?",
@@ -82,6 +86,13 @@ COUNTS = (
         r"which has more \1, \2 or \3?",
     ),
     (r",? (?:and )?not (?:just|only) (?:here|there)(?=\W*$)", ""),
+    (
+        r",? (?:and )?not (?:just|only) (?:what(?:['’]s| is| (?:you|we|i) (?:can )?see| the camera (?:shows|sees)) )?"
+        r"(?:(?:on|in) (?:the |this )?(?:screen|view|picture|frame|shot)|visible(?: now)?)(?=\W*$)",
+        "",
+    ),
+    (r"\bin each case\b", "at each one"),
+    (r"\bin (?:the )?(?:list(?:ed)?|preset) order\b|\bin the order (?:(?:they(?:['’]re| are) )?listed|of the list)\b", "in order"),
     (r"\bexcl?\. (?=\w)", "except "),
     (r"\b(?:no\.|qty\.?|quantity) (?:of )?(?=[a-z])", "number of "),
     (
@@ -104,7 +115,7 @@ COUNTS = (
     ),
     (r"^(.*\bhow many [\w ]+?) (?:right |over |out |down |up )there\?*$", r"\1?"),
     (
-        r"\b(?:in|on|across|over|around|throughout) the (?:whole|entire) (?:grounds?|stadium|lot|park|car ?park"
+        r"\b(?:in|on|across|over|a?round|throughout) the (?:whole|entire) (?:grounds?|stadium|lot|park|car ?park"
         r"|garden|field|harbou?r|port|yard|property|premises|estate|site|farm|compound|campus)\b",
         "in the whole scene",
     ),
@@ -114,7 +125,10 @@ COUNTS = (
         r"\1 in the whole scene?",
     ),
     (r"\b(?:give|get) (?:us|me) (?:a|the) (?:number|count|figure|total|tally) (?:on|for|of) ", "count "),
-    (r"^(count [\w -]+?),? (?:in )?(?:the )?current (?:view|frame|picture)(?=\W*$|[.;,])", r"\1 in the current view"),
+    (
+        r"^(count [\w -]+?),? (?:(?:with)?in(?:side)? )?(?:the |this )?current (?:view|frame|picture)(?=\W*$|[.;,])",
+        r"\1 in the current view",
+    ),
     (r"^full[- ]scene count: (?:the )?([\w ]+)", r"count the \1 in the whole scene"),
     (r", and, separately, (?=the )|\band, separately, (?=the )", " and "),
     (r"\bcount (the [\w ]+?) again(?=[.,;!?]|$| and\b)", r"count \1"),
@@ -126,7 +140,10 @@ COUNTS = (
         r"^((?:how many|count|number of)\b[^?.!]*?), (?:the )?whole (?:yard|site|scene|area|lot|place) i mean\W*$",
         r"\1 in the whole scene",
     ),
-    (r"^((?:how many|number of) [\w -]+?),? (?:in )?(?:the )?current (?:view|frame|picture)\W*$", r"\1 in the current view"),
+    (
+        r"^((?:how many|number of) [\w -]+?),? (?:(?:with)?in(?:side)? )?(?:the |this )?current (?:view|frame|picture)\W*$",
+        r"\1 in the current view",
+    ),
     (r"^((?:how many|number of|count) [\w -]+?),? (?:in )?all directions\W*$", r"\1 in the whole scene"),
     (
         r"^if (?:you|we|i) (?:had|have|took|take) a look (?:all the way |all |right )?(?:a)?round, ([^?]*?)(?: "
@@ -140,7 +157,7 @@ COUNTS = (
         r"how many \1 are there in the whole scene?",
     ),
     (r"^(taking in the (?:whole|entire) (?:scene|area|site|place))(?: rather than [^,]+), ([^?]+)\?*$", r"\2 in the whole scene?"),
-    (r"\b(how many [\w ]+?) (?:are (?:stored|kept|stacked|lying)|lie|sit|stand) (?=at|in|on)", r"\1 are "),
+    (r"\b(how many [\w ]+?) (?:are (?:stored|kept|stacked|lying)|(?:do )?(?:lie|sit|stand)) (?=at|in|on)", r"\1 are "),
     (
         r"^(?:please )?look (?:at|over|around|across) the (?:whole|entire) \w+ and (?:give me a count of|count) "
         r"(?:the )?([\w ]+?)\W*$",

@@ -102,6 +102,16 @@ REMARKS = (
     (r"[.?!] that (?:should|ought to|will) (?:put|bring|get|give|show|do)\b[^?!]*$", ""),
     (r"[;,.] (?:both|they|these|all) (?:are|is) for (?:the|my|our)\b[^;.]*\W*$", ""),
     (
+        r",? before (?:the |my |our )?(?:next |morning |evening |night |day )?(?:hand ?over|shift change|lunch(?:time)?|breakfast"
+        r"|dinner|tea|closing(?: time)?|opening(?: time)?|kick-?off|curfew|dark|dusk|nightfall|midnight|noon|midday)\W*$",
+        "",
+    ),
+    (
+        r"[.?!,;] (?:i|we|he|she|they|(?:the|my|our) (?:\w+ )?\w+) (?:just )?(?:wants?|needs?|would like) to (?:know|decide|see) "
+        r"(?:where|what|when|who|whether|which(?: \w+){0,2}) to (?!the\b|my\b|our\b|a\b)\w+\b[^.;?!,]*\W*$",
+        "",
+    ),
+    (
         r"\b(?:my|the|our) [\w'’ ]{2,30}? (?:says?|said|wants (?:me|you)|told me|tells me|asks (?:me|you)|asked me) to "
         r"(?=(?:pan|tilt|zoom|point|turn|go|take|count|move|look|aim)\b)",
         "",
