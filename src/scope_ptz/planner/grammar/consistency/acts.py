@@ -13,6 +13,10 @@ _PICTURES = frozenset(
     {"photo", "photos", "photograph", "photographs", "picture", "pictures", "snapshot", "snapshots", "screenshot"}
 )
 _TAKING = frozenset({"take", "taking", "snap", "grab", "save", "capture", "shoot", "record", "store"})
+_WISHING = frozenset({"like", "love", "want", "need", "prefer", "appreciate"})
+_RESEMBLING = frozenset({"look", "looks", "looked", "looking", "is", "s", "something", "nothing", "just", "more"})
+"""Words before a "like" that compares and does not wish: "it looks like a photo"."""
+_INDEFINITE = frozenset({"a", "an", "one", "another", "some", "two", "three"})
 _TAKE_REACH = 4  # number of words before "picture" in which to look for "take"
 _TURNS = {"pan": "pan", "panning": "pan", "tilt": "tilt", "tilting": "tilt"}
 _FORBIDDEN = {
@@ -108,8 +112,9 @@ def _ends_clause(words: Sequence[Word], i: int) -> bool:
 def _is_omitted(words: Sequence[Word], i: int, evidence: Evidence) -> bool:
     text = words[i].text
     if text in _PICTURES:
-        taken = any(word.text in _TAKING for word in words[max(0, i - _TAKE_REACH) : i])
-        return taken and not evidence.has(ast.Snap)
+        before = [word.text for word in words[max(0, i - _TAKE_REACH) : i]]
+        is_taken = not _TAKING.isdisjoint(before) or (_is_wished_for(before) and not evidence.has(ast.ZoomTo, ast.Zoom))
+        return is_taken and not evidence.has(ast.Snap)
     if text == "home":
         return not evidence.has(ast.Home, ast.Back) and not _is_part_of_preset(text, evidence)
     if text in _TURNS:
@@ -121,6 +126,14 @@ def _is_omitted(words: Sequence[Word], i: int, evidence: Evidence) -> bool:
             ast.ZoomTo, ast.Back, ast.Track, ast.CameraState, ast.Snap, ast.Home, ast.Help
         )
     return False
+
+
+def _is_wished_for(before: Sequence[str]) -> bool:
+    """Return whether the words before "photo" wish for one: "I'd like a quick photo", unlike "I need the photo gallery"."""
+    return any(
+        word in _WISHING and not _INDEFINITE.isdisjoint(before[i + 1 :]) and (not i or before[i - 1] not in _RESEMBLING)
+        for i, word in enumerate(before)
+    )
 
 
 def _is_part_of_preset(text: str, evidence: Evidence) -> bool:

@@ -43,6 +43,11 @@ _MOTION = frozenset({
     "turn", "bit", "little", "touch", "tad", "further", "more", "degrees", "degree", "deg", "panning", "tilting", "looking",
     "moving", "diagonally",
 })  # fmt: skip
+_DETERMINERS = frozenset({"the", "a", "an", "my", "our", "his", "her", "their", "its", "some", "those", "these", "all"})
+_AMOUNTS = frozenset(
+    {"bit", "little", "lot", "touch", "tad", "few", "same", "full", "whole", "way", "fraction", "quarter", "half", "notch"}
+)
+_VERB_REACH = 5  # number of words before "left" in which a verb of motion makes it a direction
 _TOWARDS = frozenset({"at", "to", "towards", "toward", "on", "onto", "face"})
 _INDIRECT_MOVE_WORDS = frozenset({
     "increase", "raise", "boost", "back", "again", "same", "opposite", "reverse", "undo", "another", "further", "more", "minus",
@@ -88,10 +93,19 @@ def _is_direction(words: Sequence[Word], i: int, direction: str) -> bool:
         is_tag = before == "," and after == "?"  # "nobody's there, right?"
         return not is_tag and after not in _AFTER_RIGHT and before not in {"all", "straight", ""}  # "Right, count the cars"
     if words[i].text == "left":
-        return before not in _BEFORE_LEFT
+        return before not in _BEFORE_LEFT and not _is_verb(words, i)
     if direction in {"up", "down"}:
         return before in _MOTION and after not in {"to", "close", "the"}  # "go up the north fence"
     return True
+
+
+def _is_verb(words: Sequence[Word], i: int) -> bool:
+    """Return whether "left" is the past of "leave": "the boys left the lights on", unlike "the view left a bit"."""
+    before = [word.text for word in words[max(0, i - _VERB_REACH) : i]]
+    after = [word.text for word in words[i + 1 : i + 3]]
+    has_subject = len(before) > 1 and before[-2] in _DETERMINERS
+    has_object = len(after) > 1 and after[0] in _DETERMINERS and after[1] not in _AMOUNTS
+    return has_subject and has_object and _MOTION.isdisjoint(before)
 
 
 def unnamed_directions(words: Sequence[Word], evidence: Evidence) -> list[str]:

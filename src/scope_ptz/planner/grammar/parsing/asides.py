@@ -69,6 +69,11 @@ _MOVE_AT_THE_END = (
 """A move without a verb after a remark, as in "that has it, left a bit". It must not be ignored."""
 
 _NOT_A_REASON = frozenset({"must", "should", "never", "both"})
+_WISHES_FOR_RESULT = (
+    "(FILLER|COMMA|AND|THEN)* (WRAPPER|(i|we|SELF) (MODAL|ADVERB|FILLER)* (like|love|want|need|prefer|appreciate)) "
+    "(ADVERB|FILLER|to|have|get|SELF)* (DET|NUM|ANY|LITTLE)? _{0,2} (PICTURE|SNAP|CLOSER|COUNTNOUN|close_up|count|number)"
+)
+"""The beginning of a wish for a picture, a close view or a count, which asks for one: "I'd also like a photo"."""
 
 
 def is_reason(lexemes: Sequence[Lexeme]) -> bool:
@@ -146,7 +151,7 @@ def only_gives_reason(clause: Clause, clause_count: int) -> bool:
     denies = any(x.has("NOT") for x in clause.lexemes)
     if not denies and any(x.has("EACHTIME", "COUNT-ED", "COUNT", "TRACK", "READ") for x in clause.lexemes):
         return False
-    if search(_MOVE_AT_THE_END, clause.lexemes):
+    if search(_MOVE_AT_THE_END, clause.lexemes) or match_start(_WISHES_FOR_RESULT, clause.lexemes):
         return False
     if _NOT_A_REASON & {x.word for x in clause.lexemes} and not match_start("(FILLER)* (i|we) (MODAL)? never FREE", clause.lexemes):
         return False

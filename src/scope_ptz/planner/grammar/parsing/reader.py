@@ -253,6 +253,8 @@ class Reader:
             return named
         if places is None or not rest:
             return None
+        if len(rest) > 1 and rest[-1].word == "over":
+            rest = rest[:-1]  # "is it icy over at the yard?"
         if any(x.has("PRON") for x in rest[-1:]) and match_start("WHQ", rest):
             return None
         if has_question_mark and full_match("(ATLEAST|MORETHAN|FEWERTHAN|ATMOST|EXACTLY) NUM", rest):

@@ -192,7 +192,7 @@ def question_step(
         if match_start("(if|whether|IF)", rest):
             return Ask(text_of(source, rest) + end, scope, embedded=True)
         if (
-            match_start("(DET|PRON) _*? BE _", rest)
+            match_start("(DET|PRON|PRESET) _*? BE _|FREE{1,2} BE _", rest)
             and not search("REL|who|that|which|HOWMANY", rest)
             and not search(_NO_TOPIC, rest)
         ):

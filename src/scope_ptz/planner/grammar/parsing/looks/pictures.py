@@ -21,9 +21,15 @@ if TYPE_CHECKING:
     pass
 
 
+_USES = (
+    "reference|record|baseline|control|test|sample|proof|evidence|comparison|inspection|overview|progress|handover|documentation|"
+    "backup|spare|dated|official|extra|plain|simple|decent|proper"
+)
+"""Words before "picture" that say what it is for, or how good it is, and not what it shows."""
+
 _PICTURE_WORDS = (
     r"(DET|NUM|AMOUNTISH|quick|nice|good|single|couple of|SEVERAL|few|more|new|clear|fresh|final|last|high|"
-    r"FREE PICTURE|MORE|current|a|ANOTHER|CLOSER|WIDE|wide|second|ORDINAL|pair of|full|LITTLE|separate)*"
+    rf"FREE PICTURE|{_USES}|MORE|current|a|ANOTHER|CLOSER|WIDE|wide|second|ORDINAL|pair of|full|LITTLE|separate)*"
 )
 
 

@@ -42,6 +42,12 @@ _TOPIC_MODIFIERS = frozenset({"stop", "call", "check", "parking", "head", "tail"
 _PLACES = frozenset({"pitch", "track", "swing", "stand", "roll"})
 """Command words that are places after a preposition and an article: "the sprinklers on the pitch"."""
 
+_NUMBERED = frozenset({"track", "stand", "pitch", "stop", "head", "switch", "board"})
+"""Command words that are places or things when a number follows: "track 4"."""
+
+_BEFORE_NUMBERED = frozenset({"on", "at", "in", "by", "near", "beside", "from", "of", "along"})
+"""Prepositions before a numbered place."""
+
 _BREAKS = (
     "COMMA",
     "STOP",
@@ -80,7 +86,10 @@ def with_compound_nouns(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
         if x.has("FREE", "PRESET") or not i:
             continue
         after = lexemes[i + 1] if i + 1 < len(lexemes) else None
-        if _is_modifier(out, i, after) or _is_head(out, i, after):
+        later = lexemes[i + 2] if i + 2 < len(lexemes) else None
+        if x.word == "no" and _is_prohibition(out[i - 1], after, later):
+            out[i] = x.reworded(x.word, "FREE")
+        if _is_modifier(out, i, after) or _is_head(out, i, after) or _is_numbered(out, i, after):
             out[i] = x.reworded(x.word, "FREE")
     return out
 
@@ -125,6 +134,23 @@ def _is_head(lexemes: Sequence[Lexeme], i: int, after: Lexeme | None) -> bool:
     if before_phrase is None or before_phrase.word in _BEFORE_OBJECT:
         return True
     return before_phrase.has("FIND", "TRACK", "COMMA", "FILLER", "STOP")
+
+
+def _is_prohibition(before: Lexeme, after: Lexeme | None, later: Lexeme | None) -> bool:
+    """Return whether "no" begins the name of a sign: "the no entry sign", "how many no parking cones"."""
+    is_named = before.has("HOWMANY") or before.word in {"the", "a", "an", "this", "these", "those", "that", "each", "every"}
+    return is_named and after is not None and later is not None and after.has("FREE", "ENTER") and _is_noun(later)
+
+
+def _is_numbered(lexemes: Sequence[Lexeme], i: int, after: Lexeme | None) -> bool:
+    """Return whether a command word with a number names a place: "is track 4 empty?", "the people on stand 2"."""
+    before = lexemes[i - 1]
+    return (
+        lexemes[i].word in _NUMBERED
+        and after is not None
+        and after.has("NUM")
+        and (before.has("BE") or before.word in _BEFORE_NUMBERED)
+    )
 
 
 def _phrase_start(lexemes: Sequence[Lexeme], i: int) -> int:

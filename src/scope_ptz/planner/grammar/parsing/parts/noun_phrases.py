@@ -31,6 +31,19 @@ _DETERMINERS = ("DET", "EVERY", "ANY")
 _DEFINITE = frozenset({"the", "that", "this", "these", "those", "all_the", "all_of_the", "each_of_the", "my", "our", "your"})
 _PRONOUN = re.compile(r"(?:it|them|they|that|this|those|these|him|her|that one|this one|he|she|one|the one)", re.IGNORECASE)
 _POSSESSIVES = frozenset({"its", "his", "her", "their"})
+_VAGUE_PLACES = frozenset({"there", "here", "somewhere", "someplace"})
+"""Words after a noun phrase that only say that the thing is somewhere in view."""
+
+_WITH_OWN_SENTENCE = (
+    "FREE (he|she|it) (ADVERB|FILLER)* (ran|went|came|fell|escaped|wandered|vanished|disappeared|slipped|jumped|flew|looks|"
+    "seems|sounds|"
+    "(got|HAVEV|broke|keeps) (out|away|loose|lost|stuck|off|running|going|getting|barking|moving))"
+)
+"""A noun with a sentence of its own, in which the noun has no place: "the dog he ran off", unlike "the box he left"."""
+
+_STRANDED = frozenset({"to", "in", "on", "at", "with", "from", "by", "into", "for", "through", "past", "against"})
+"""Prepositions at the end of a relative clause: "the school he went to"."""
+
 _NO_NOUNS = frozenset({"than", "nor", "neither", "minus", "outnumber", "outnumbers", "exceed", "exceeds"})
 _RELATIVE = (
     (re.compile(r"\b(?:(?:who|that|which) )?(?:are|is|were|was)(?:n['’]?t| not)\b", re.IGNORECASE), "not"),
@@ -81,7 +94,7 @@ def thing_of(source: Source, lexemes: Sequence[Lexeme]) -> Thing | None:
     is_list = search("(AND|OR) (the|a|an)|COMMA", lexemes) and not search("between", lexemes)
     if is_list or not is_noun_phrase(lexemes):
         return None  # several things
-    while len(lexemes) > 1 and (lexemes[-1].word in {"there", "here"} or (lexemes[-1].word == "in" and lexemes[-2].has("FREE"))):
+    while len(lexemes) > 1 and (lexemes[-1].word in _VAGUE_PLACES or (lexemes[-1].word == "in" and lexemes[-2].has("FREE"))):
         lexemes = lexemes[:-1]  # "at least 3 awnings there", "if there is a tanker in"
     if lexemes[0].word == "there" and len(lexemes) > 1:
         lexemes = lexemes[1:]  # "there a van" of "is there a van"
@@ -123,6 +136,8 @@ def is_noun_phrase(lexemes: Sequence[Lexeme]) -> bool:
         "ADVERB", "PRON", "ANY", "VISIBLE", *DIRECTIONS
     ):
         return False
+    if lexemes[-1].word not in _STRANDED and search(_WITH_OWN_SENTENCE, lexemes):
+        return False  # "find the black dog he ran off again"
     if search("as (PRON|SELF)", lexemes) or match_start("NUM OR NUM|NUM DEG? (the|a|an)|(it|them|him|her) PREP", lexemes):
         return False
     if search("(ZOOM-ED|PAN-ED|TILT-ED) (LIMIT|LITTLE|LOT|RIGHT)? (IN|OUT|LEFT|RIGHT|UP|DOWN)|instead_of", lexemes):

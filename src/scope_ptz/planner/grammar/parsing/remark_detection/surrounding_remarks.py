@@ -22,7 +22,9 @@ _STATEMENT = re.compile(
     rf".+|(?:looks|seems|sounds|feels) .+|(?:boss|gaffer) is .+|i'm done.*|i "
     rf"(?:can't|cannot) remember if .+|(?:i'm|i am) trying to (?:establish|find out|work out|see) .+|(?:gotta|got to) .+"
     rf"|(?-i:[A-Z][a-z]+)(?: (?:{_REPORTING})|'s| is| has) .+|some \w+ \w+'s .+|(?:i|we|it) (?:\w+ )?wants .+|its "
-    rf"(?:got|been|getting) .+",
+    rf"(?:got|been|getting) .+"
+    r"|(?:think|reckon|guess|suspect|bet|hope|fear|doubt|pretty sure|not sure|dunno) (?:it|its|it's|he|he's|she|she's|they|they're"
+    r"|the|that|that's|there's|somebody|someone|my|our|if|whether)\b.*",
     re.IGNORECASE,
 )
 """Statements that ``is_statement`` does not recognise: "Dave reckons it's getting too high", "looks funny from here"."""
@@ -56,7 +58,8 @@ _REQUEST = (
 WITHDRAWAL = (
     r"wrong|mistake|error|thoughts|against|hold on|cancel\w*|forget|scratch|scrap|never mind|nvm|kidding|joking"
     r"|changed|decided|limits?"
-    r"|forbidden|allowed|banned|private|secret|called off|don't|do not|didn't want|already"
+    r"|forbidden|allowed|banned|private|secret|called off|don't|do not|didn't want"
+    r"|already(?! had (?:an?|one|two|three|his|her|their|some) [a-z]{3})"
     r"|refus\w+|abort\w*|retract\w*|revok\w+|disregard|belay|strike that|stays? put|objects?|objected|permission|approval"
     r"|(?:we|you|i) (?:should|must|need|ought)n't|not what (?:i|we)|told (?:you|me|us|him|her) (?:not |never )?to"
     r"|nobody (?:told|asked|said)|(?:he|she|they|i|we) meant|assuming|provided|providing|subject to|bad idea|typo|slipped"
@@ -73,12 +76,15 @@ _HARMLESS = re.compile(
     r"|\b(?:under(?:neath)?|below|beneath|behind|above|near|beside) you\b"
     r"|\b(?:boss|manager|he|she|they|gaffer|foreman|everyone|somebody|someone)(?:['’]s| is| are|['’]re| was)? asking\W*$"
     r"|\b\w+ (?:is|are|was|were|keeps?) asking(?: me| us)?(?: about (?:it|them|this|that))?\W*$"
-    r"|\b(?:i|we) (?:can['’]?t|cannot|could not|couldn['’]?t) tell(?: from here)? (?:if|whether|what|which|who)\b"
+    r"|\b(?:i|we) (?:can['’]?t|cannot|could not|couldn['’]?t) (?:tell|make out|see|work out|read)"
+    r"(?: from here)? (?:if|whether|what|which|who)\b"
     r"|\bi (?:just )?want(?:ed)? the (?:whole )?(?:lot|thing|works)\b|\bunder the camera\b"
     r"|\b(?:won['’]?t|will not|doesn['’]?t|never) stop (?!pan|tilt|zoom|turn|mov|track|follow|point)\w+ing\b"
     r"|\bshould (?:arrive|turn up|come|land|be there)\b|\bshould be (?:bringing|coming|arriving|landing|starting"
     r"|finishing|done|ready)\b"
     r"|\b(?:i|we) (?:don't|do not) want to (?:miss|lose|be late|upset|wake|disturb)\b"
+    r"|\b(?:i|we) (?:don't|do not|wouldn't) want (?:anyone|anybody|someone|somebody|people|him|her|them|the \w+) (?:to )?"
+    r"(?:slip|fall|trip|get|driv|walk|complain|wait|run|bump)\w*"
     r"|\btrying to (?:see|work out|figure out|find out) (?:if|whether|what|which|how)\b"
     r"|\b(?:asking|asked|talking|told me) about (?:the|this|our) (?:view|camera)\b"
     r"|\b(?:just |only )?(?:looking|pointing|staring) at (?:the )?(?:sky|ground|floor|ceiling|wall|clouds)\b",

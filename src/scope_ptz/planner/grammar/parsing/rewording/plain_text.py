@@ -12,7 +12,7 @@ from scope_ptz.planner.grammar.parsing.rewording.text_counts import COUNTS
 from scope_ptz.planner.grammar.parsing.rewording.text_courtesy import COURTESIES
 from scope_ptz.planner.grammar.parsing.rewording.text_moves import MOVES
 from scope_ptz.planner.grammar.parsing.rewording.text_places import with_places_named
-from scope_ptz.planner.grammar.parsing.rewording.text_questions import QUESTIONS, with_separate_questions
+from scope_ptz.planner.grammar.parsing.rewording.text_questions import QUESTIONS, with_question_apart, with_separate_questions
 from scope_ptz.planner.grammar.parsing.rewording.text_remarks import REMARKS
 from scope_ptz.planner.grammar.parsing.rewording.text_spelling import SPELLING, WORDS
 from scope_ptz.planner.grammar.parsing.rewording.text_views import VIEWS
@@ -33,7 +33,7 @@ def written_out(text: str) -> str:
         return text
     text = _LONG_WORD.sub(lambda match: corrected_noun(match[0]), text)
     text = _NONSTANDARD.sub(lambda match: WORDS[match[0].lower().rstrip("'’")], text)
-    return reworded_text(_SHORT_ENDING.sub(_whole, text), _STANDARD)
+    return with_question_apart(reworded_text(_SHORT_ENDING.sub(_whole, text), _STANDARD))
 
 
 def _whole(match: re.Match[str]) -> str:

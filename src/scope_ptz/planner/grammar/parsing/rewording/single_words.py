@@ -11,6 +11,9 @@ from scope_ptz.planner.grammar.parsing.parts.patterns import match_start, search
 
 _BREAKS = ("COMMA", "STOP", "AND", "THEN", "COLON", "DASH", "QUESTION")
 _URGED = frozenset({"you", "it", "her", "him"})
+_BEFORE_OBJECT = frozenset({"also", "please", "kindly", "quickly"})
+"""Words that some speakers put between a verb and its object, where they add nothing."""
+
 _COMMANDS = frozenset({"tilt", "zoom", "pan", "take", "go", "turn", "snap", "count", "tell", "read", "follow", "track", "find"})
 
 
@@ -25,6 +28,8 @@ def reworded_in_context(before: Sequence[Lexeme], lexeme: Lexeme, after: Lexeme 
     last = before[-1] if before else None
     begins = last is None or last.has(*_BREAKS, "FILLER")
     ends = after is None or after.has("STOP", "QUESTION")
+    if lexeme.word in _BEFORE_OBJECT and last is not None and last.has(*VERBS) and after is not None and after.has("DET", "NUM"):
+        return []  # "make also one photo", "search please the shed"
     if lexeme.word == "an" and after is not None and after.word in _COMMANDS:
         return [lexeme.reworded("and", "AND", "GLUE")]  # "go to the gate an tilt down 6"
     begins_duration = after is not None and (after.has("NUM", "SECONDS", "MINUTES") or after.word == "few")

@@ -50,6 +50,7 @@ _CHECK = (
 _STATE = "(FILLER)* (DET)? (?P<name>PRESET) (BE|LOOKSLIKE|looks|seems|sounds|gets) (?P<state>_+)"
 """A statement about a preset: "the main gate looks busy"."""
 
+_THERE_WORDS = frozenset({"there", "over_there", "in_there", "out_there", "up_there", "down_there", "still_there"})
 _PRONOUNS = frozenset({"it", "him", "her", "them", "they", "he", "she"})
 _VERB_FORMS = tuple(f"{verb}{ending}" for verb in VERBS for ending in ("-ED", "-ING"))
 _EXCLUDED = ("NUM", "DEG", "HOME", "QUESTION", "IF", "EVERY", "PRESETNOUN", "WRAPPER", *DIRECTIONS, *MARKERS)
@@ -169,7 +170,8 @@ def _asks_there(lexemes: Sequence[Lexeme]) -> bool:
     """Return whether lexemes are one question that names no preset: "how many people are there?"."""
     ends = [i for i, x in enumerate(lexemes) if x.has(*_ENDS)]
     is_one = not ends or ends[0] == len(lexemes) - 1
-    return is_one and any(x.word == "there" for x in lexemes) and is_question(lexemes) and not any(x.has("PRESET") for x in lexemes)
+    is_there = any(x.word in _THERE_WORDS for x in lexemes)
+    return is_one and is_there and is_question(lexemes) and not any(x.has("PRESET") for x in lexemes)
 
 
 def _place_in(

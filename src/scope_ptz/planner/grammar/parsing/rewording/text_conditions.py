@@ -14,12 +14,16 @@ _NOUN_END = (
 )
 """Where the noun phrase of a condition ends."""
 
+_STATE = r"(wide open|open|shut|closed|ajar|empty|idle|unattended|still|unused|vacant|unlocked|unmanned|dark)"
+
 CONDITIONS = (
     (rf"\b({_IFS}) {_UNSEEN} (?:anyone|anybody|any people){_NOUN_END}", r"\1 there is nobody"),
     (rf"\b({_IFS}) {_UNSEEN} (?:any|an?) ([\w -]+?){_NOUN_END}", r"\1 there is no \2"),
     (rf"\b({_IFS}) {_UNSEEN} (the [\w -]+?){_NOUN_END}", r"\1 \2 is not in view"),
     (rf"\b({_IFS}) ((?:the |an? )[\w -]+?) has left(?! (?:the|an?|his|her|its|it|my|some)\b)", r"\1 \2 is not in view"),
     (rf"\b({_IFS}) ((?:the )[\w -]+?) have left(?! (?:the|an?|his|her|its|it|my|some)\b)", r"\1 \2 are not in view"),
+    (rf"\b({_IFS}|whether) ((?:the|that|my|our|an?) [\w -]+?) (?:stands|sits|lies|remains|stays|hangs) {_STATE}\b", r"\1 \2 is \3"),
+    (rf"\b({_IFS}|whether) ((?:the|my|our|those) [\w -]+?) (?:stand|sit|lie|remain|stay|hang) {_STATE}\b", r"\1 \2 are \3"),
     (r",? (?:and )?once it(?:['’]s| is) there,? (?:please )?(?=\w)", ", then "),
     (
         r",? (?:and,? |then,? )?(?:once|when|after) (?:that|the|this) (?:move|movement|turn|pan|tilt|zoom) (?:has|is) "

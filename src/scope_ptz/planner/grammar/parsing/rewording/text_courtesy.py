@@ -15,6 +15,11 @@ COURTESIES = (
     (r"[,.] [a-z]{3,15} behind (?:u|you|us|me)\W*$", ""),
     (r"\b(then|and) again (?=take |pan |tilt |zoom |turn )", r"\1 "),
     (
+        r"\b(i|we)(?: would|['’]d) (?:also|really|quite|rather|still|actually|ideally|very much|so|dearly) "
+        r"(?=(?:like|love)\b(?! (?:left|right)))",
+        r"\1 would ",
+    ),
+    (
         r"^(an?|the) ([^,.;?]*\b(?:degrees?|percent|turn|times)\b[^,.;?]*) (?:would|should|will) be "
         r"(?:sufficient|adequate|enough|ideal|fine|perfect|plenty)\W*$",
         r"\1 \2",
@@ -97,5 +102,6 @@ COURTESIES = (
     (r"\bright now (?=the|my|our|some)", "right now, "),
     (r"^(?-i:(?:[A-Z]\w*|[A-Z]\d+)(?: [A-Z]\w*){0,2}) to (?-i:CCTV|[Cc]ontrol|[Cc]amera(?: \w+)?), ", ""),
     (r"^control from \w+, ", ""),
+    (r"\b(what (?:i|we)(?: would|['’]d)? (?:really |also )?(?:like|need|want|am after)), (?=is\b)", r"\1 "),
 )
 """Patterns with the words that replace them."""

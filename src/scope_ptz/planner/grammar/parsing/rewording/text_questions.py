@@ -7,6 +7,7 @@ import re
 from scope_ptz.english import is_plural
 from scope_ptz.planner.grammar.parsing.rewording.text_counts import NO_TOPIC
 
+_STATES = "open|shut|closed|locked|clear|empty|full|free|busy|quiet|blocked|occupied|taken|lit|on|off|up|down|ready|clean|dirty"
 _TAGS = "right|correct|yeah|is there|are they|is that right"
 _INVERTED = r"(?:is|are|does|do|has|have) (?:the|there|any|anyone|anybody|someone|somebody|all|an?)\b"
 _JOINED = re.compile(
@@ -18,7 +19,29 @@ _NOT_JOINED = re.compile(r"\b(?:if|or|than|more|fewer|same|both|between|each|tot
 _PRONOUNS = re.compile(r"\b(?:it|its|they|their|them|him|his|her|he|she|that|those|these|this|ones?)\b", re.IGNORECASE)
 
 _MAX_TOPIC = 7  # maximum number of words before "is he ...?"
+_WHOLE = r"(?:(?:whole|entire|full|complete)[- ]?(?:site|scene|area|yard|place|view|round)?|all[- ]round|360(?: degrees?)?)"
+_QUESTION = r"(?:is|are|do|does|has|have|can|how|who|what|which|where|any)\b"
+_ARTICLE = r"(?:the|that|this|these|those|my|our|his|her|their)"
 QUESTIONS = (
+    (
+        rf"^(?:(?:do|make|run) )?(?:a )?{_WHOLE} (?:check|scan|sweep|survey|search|look|inspection)\s?[:,.–-]+ "
+        rf"({_QUESTION}[^?.;]*)\?*$",
+        r"\1 in the whole scene?",
+    ),
+    (
+        r"^(?:(?:please )?(?:answer|just|simply|reply)(?: me)?(?: with)?(?: an?)? )?(?:yes or no|yes/no)(?: please)?\s?[:,.–-]+ "
+        rf"(?={_QUESTION})",
+        "",
+    ),
+    (
+        rf"^({_ARTICLE} )?((?!{_QUESTION})[\w'’ -]+?) (says?|reads?|shows?) what(?: exactly)?\W*$",
+        lambda match: _asked_in_order(match),
+    ),
+    (
+        rf"^(?:the )?(([a-z]+) \d+) ({_STATES})(?: (?:or not|yet|now|still))?\?$",
+        lambda match: match[0] if match[2].lower() != "track" and NO_TOPIC.search(match[2]) else f"is {match[1]} {match[3]}?",
+    ),
+    (r"\b(looks?|looked|seems?|appears?|sounds?) as (?:if|though) ", r"\1 like "),
     (
         r"\b(tell me (?:how many|what|which|where|who|whether)\b[^.;?]*?) and if "
         r"(?=(?:the|there|any|it|they|he|she|my|our)\b[^,.;]*\W*$)",
@@ -119,7 +142,8 @@ QUESTIONS = (
     (r"^looking all (?:a)?round(?: us| you| the \w+)?, ([^?]*)\?*$", r"\1 in the whole scene?"),
     (r"^all (?:a)?round (?:the \w+|us|you)[:,] ([^?]*?)(?: anywhere)?\?*$", r"\1 in the whole scene?"),
     (
-        r"^(?:confirm|verify) (?:that )?(?:the )?([\w ]+?) (lit|open|shut|closed|locked|on|off|clear|empty|full)(?:,? "
+        r"^(?:confirm|verify) (?:that )?(?:the )?((?:(?!(?:is|are)\b)[\w ])+?) "
+        r"(lit|open|shut|closed|locked|on|off|clear|empty|full)(?:,? "
         r"(?:yes or no|y/n))?\W*$",
         lambda match: f"{'are' if is_plural(match[1].split(' ')[-1]) else 'is'} the {match[1]} {match[2]}?",
     ),
@@ -140,6 +164,14 @@ def _asks(text: str) -> bool:
     return re.search(r"\?|\b(?:count|how many|tell|report|check|see if|whether|find|look for)\b", text, re.IGNORECASE) is not None
 
 
+def _asked_in_order(match: re.Match[str]) -> str:
+    """Return "what does the sign by the door say?" for "sign by the door says what"; other texts unchanged."""
+    if NO_TOPIC.search(match[2]):
+        return match[0]
+    head = re.split(r" (?:on|at|by|in|of|over|near|next|behind|above|under|beside|outside) ", match[2])[0].split()[-1]
+    return f"what {'do' if is_plural(head) else 'does'} {match[1] or 'the '}{match[2]} {match[3].removesuffix('s')}?"
+
+
 def _about_topic(match: re.Match[str]) -> str:
     """Return "is that man carrying a box?" for "that man, is he carrying a box?"; other texts unchanged."""
     if len(match[1].split()) > _MAX_TOPIC or NO_TOPIC.search(match[1]):
@@ -155,6 +187,24 @@ def _inverted(match: re.Match[str]) -> str:
     article = "" if match[1].lower().startswith("the ") else "the "
     state = re.sub(r" or (?:no|not)$", "", match[3], flags=re.IGNORECASE)
     return f"{match[2]} {article}{match[1]} {state}?"
+
+
+_UNPUNCTUATED = re.compile(
+    r"(?P<news>(?:(?:well|so|oh|ok|okay|hey|right|look|listen) )*(?:i|we|he|she|they|somebody|someone|something|it)\b(?:['’]\w+)?"
+    r"(?: [\w'’-]+){3,}?(?<! what)(?<! where)(?<! who)(?<! how)(?<! which)(?<! why)(?<! when)(?<! whether)(?<! if)"
+    r"(?<! that)(?<! and)(?<! or)(?<! but)(?<! than)(?<! as)(?<! know)(?<! tell)(?<! see)(?<! check)(?<! wonder)(?<! ask)(?<! of)"
+    r"(?<! to)(?<! out)(?<! about)(?<! me)(?<! sure)(?<! matter)) "
+    r"(?P<question>(?:(?:is|are|was|were) (?:the|there|any|anyone|anybody|those|these|"
+    r"my|our)\b|what colou?r (?:is|are|was) )(?! (?:more|other)\b)[^,.;:?!]{6,}?)\?*",
+    re.IGNORECASE,
+)
+"""News, and a question that follows it without punctuation: "I heard a bang are there any people on the platform"."""
+
+
+def with_question_apart(text: str) -> str:
+    """Return "I heard a bang. are there any people?" for "I heard a bang are there any people"; other texts unchanged."""
+    match = _UNPUNCTUATED.fullmatch(text.strip())
+    return text if match is None else f"{match['news']}. {match['question']}?"
 
 
 def with_separate_questions(text: str) -> str:

@@ -7,7 +7,13 @@ _VOCATIVES = (
     "|my friend|son|bro|bruv|dude|jeeves|james|fella|fellas|champ|big man|mind|mind you|my love|petal|treacle"
 )
 _GREETINGS = "hey|hi|hello|ok|okay|morning|evening|thanks|cheers|listen|look"
-_NOTHING_ELSE = r"don['’]?t bother|leave it(?: be| alone)?|never mind|forget (?:about )?it|no worries|that['’]s fine|fine"
+_NUMBER = r"(?:\d+|two|three|four|five|six|seven|eight|nine|ten|twelve|fifteen|twenty|thirty|fifty)"
+_ALL = r"(?:it|everything|things|all|that|it all|the (?:camera|view|picture))"
+_NOTHING_ELSE = (
+    rf"don['’]?t bother|(?:just )?(?:leave|keep) {_ALL}(?: be| alone| (?:just |exactly )?(?:as|how|where|the way) "
+    r"(?:it|they|things) (?:is|are)(?: now)?)?|never mind|forget (?:about )?it|no worries|that['’]s fine|fine"
+    r"|nothing(?: to do| needs doing)?"
+)
 
 REMARKS = (
     (r",? (?:and )?i(?: just)?(?: want| need|['’]d like| would like) to show (?:him|her|them|(?:my|our) \w+)\W*$", ""),
@@ -27,7 +33,7 @@ REMARKS = (
         r"not go any further)(?: like)?",
         r"\1",
     ),
-    (r"\b(?:make|do) (?:the|my|your) rounds and (?=.*\b(?:each|every) )", ""),
+    (r"\b(?:make|do) (?:the|my|your|a) rounds?(?:[.:;]|,(?= (?:at|for|in|on) )| and) (?:please )?(?=.*\b(?:each|every) )", ""),
     (r"\bshow (?:our|the|my|these) (?:guests?|visitors?|customers?|boss|manager|board) (?=the|that)", "show me "),
     (r",? wherever (?:he|she|it|they) goes?\b", ""),
     (r"^back to home\b", "back home"),
@@ -194,6 +200,16 @@ REMARKS = (
     ),
     (r",? (?:or )?till i get (?:out )?there\b", ""),
     (r", (?:otherwise|if not,?) leave it as it is\W*$", ""),
+    (
+        r"\b((?:photo|picture|pic|shot|snap|still|image)s?\b.*|another(?: one)?\b.*)[,;.] (?:the |my |our )?[\w' ]{2,30}? "
+        r"(?:wants?|needs?|asks? for|asked for|would like) (?:both|them both|the two|two of them|the pair)(?: of them)?\W*$",
+        r"\1",
+    ),
+    (
+        rf"\b(more than|fewer than|less than|at least|at most|over|under) ({_NUMBER})\b(.+)[;,.] \2 is (?:my|our|the) "
+        r"(?:threshold|limit|cut-?off|maximum|minimum)\W*$",
+        r"\1 \2\3",
+    ),
     (r", can hear \w+(?: \w+)*\W*$", ""),
     (r"\bthe sky is taking up half of the picture\b", "it is too high"),
     (r",? the lower edge of the [\w ]+ is (?:just )?cut off\W*$", ""),

@@ -41,6 +41,7 @@ WORDS = {
     "thon": "that",
     "trk": "track",
     "wanna": "want to",
+    "wether": "whether",
     "wi": "with",
     "wld": "would",
     "wots": "what's",
@@ -53,6 +54,10 @@ WORDS = {
 SPELLING = (
     (r"\ball way\b", "all the way"),
     (r"\btheres\b", "there's"),
+    (
+        r"\b(check|see|tell me|know|confirm|verify|sure|find out|wondering) weather (?=the|there|any|it|he|she|they|my|our)",
+        r"\1 whether ",
+    ),
     (r"\bcarry out (?=an? |the )", "do "),
     (r"(?<!['’\w])th?['’](?=[a-z])", "the "),
     (r"\bo['’](?= \w)", "of"),

@@ -2,13 +2,52 @@
 
 from __future__ import annotations
 
+import re
+
 _PICTURES = "photo|picture|pic|snap|shot|still"
 
+_MOVES = re.compile(r"\b(?:pan|tilt|zoom|turn|move|swing|rotate|look|lift|raise|lower|left|right|up|down|in|out)\b", re.IGNORECASE)
+
+
+def _wanted_in_frame(match: re.Match[str]) -> str:
+    """Return "zoom in on the crane" for "I want the crane in the picture". After a move, the wish is the reason for the move."""
+    return match[0] if _MOVES.search(match.string[: match.start()]) else f"zoom in on {match[1]}"
+
+
 VIEWS = (
+    (
+        r"\b(?:know|see|hear|tell me) (?:what|which) (?:(?:camera|memory|stored|saved|preset) )?"
+        r"(?:places|positions|spots|presets|views) (?:this|the|that) (?:camera|thing|unit|device|system) "
+        r"(?:offers|has|knows|stores|remembers|holds)(?: stored| saved)?\W*$",
+        "list the presets",
+    ),
     (r"^((?:list|show|tell me|give me)\b.*\b(?:positions|presets|places|spots|views)) (?:which|that) are \w+ed\b[\w ]*\W*$", r"\1"),
     (r"^check out ((?:the|that) [\w ]+?), zoom (?:in )?(?:on|onto|to) it\b", r"zoom in on \1"),
     (r"^(?:i )?can(?:['’]?t|not) (?:make out|see|read) (the [\w ]+?)(?: from here)?, zoom in on it\b", r"zoom in on \1"),
+    (
+        r"\bi(?:['’]d| would)? (?:like|want|need) (the [\w ]+?)(?: to be)?(?: (?:properly|nicely|neatly|well|tightly))? framed"
+        r"(?: (?:properly|nicely|neatly|well|tightly|up))*(?=\W*$|, )",
+        lambda match: _wanted_in_frame(match),
+    ),
     (r"\bi(?:['’]d| would) like (the [\w ]+?) framed\b.*$", r"zoom in on \1"),
+    (
+        r"\b(?:i|we)(?:['’]d| would)? (?:like|want|need) ((?:the|that|this) [\w'’ ]+?)(?: to be)?"
+        r"(?: (?:nicely|right|properly|well|fully))? (?:in|into) (?:the )?"
+        r"(?:frame|shot|view|picture)(?=\W*$|[,.;]| for (?:the|my|our|an?)\b)",
+        lambda match: _wanted_in_frame(match),
+    ),
+    (
+        r"\b(?:get|give|show|bring|find) (?:me|us) ((?:the|that|this) [\w'’ ]+?),? "
+        r"(?:up close|close[- ]?up|nice and close|in close|very close)(?=\W*$|[,.;])",
+        r"zoom in on \1",
+    ),
+    (
+        r"^(?:please )?search (?:please )?(?:for )?((?:the|an?|my|our|that) "
+        r"(?![\w ]*\b(?:yard|site|area|scene|place|room|field|building|street|road|car park|grounds?) and)[\w'’ ]+?) "
+        r"and (?:then )?(?:come|go|get|move|zoom)(?: in)? "
+        r"(?:close|closer|near|nearer|in)?(?: to| on)? (?:it|him|her|them)(?=\W*$|[,.;])",
+        r"zoom in on \1",
+    ),
     (r"^for the next ([\w ]+? (?:seconds|minutes)), ((?:follow|track)\b.*?)\W*$", r"\2 for \1"),
     (rf"\b((?:{_PICTURES})\b.*)\btake one there(?: as well| too)?\b", r"\1take a picture"),
     (rf"\bfinish with a ({_PICTURES})\b", r"then take a \1"),
@@ -85,6 +124,14 @@ VIEWS = (
         r"|i) have|are there|are)"
         r"(?: saved| stored| set up| programmed)?(?: (?:in|on|for|with) (?:this|the|here)(?: (?:one|camera|thing"
         r"|system|site))?)?\W*$",
+        "list the presets",
+    ),
+    (
+        r"^(?:what|which) (?:(?:camera|memory|stored|saved|preset|preprogrammed|programmed) )?"
+        r"(?:places|positions|spots|presets|views|locations|memories) "
+        r"(?:does (?:it|this|the|this thing|the thing|he|she)(?: camera| unit| system| device)?|do you)"
+        r"(?: already| currently)? (?:know|have|remember|store|offer|support|hold)"
+        r"(?: already| about| of| stored| saved| in memory)*\W*$",
         "list the presets",
     ),
     (
