@@ -42,6 +42,8 @@ WORDS = {
     "trk": "track",
     "wanna": "want to",
     "wi": "with",
+    "wil": "will",
+    "wll": "will",
     "wld": "would",
     "wots": "what's",
     "wud": "would",
@@ -51,6 +53,7 @@ WORDS = {
 """Misspelt, shortened and dialect words with their standard forms."""
 
 SPELLING = (
+    (r"(?<=\w)\s*(?:\.{2,}|…)(?=\s+\w)", ","),
     (r"\ball way\b", "all the way"),
     (r"\btheres\b", "there's"),
     (r"\bcarry out (?=an? |the )", "do "),
