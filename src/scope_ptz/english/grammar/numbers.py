@@ -56,6 +56,8 @@ def read_number(words: list[str], spans: list[tuple[int, int]] | None = None) ->
     if start and _DIGITS.fullmatch(words[1]):
         inner = _number_from_digits(words[1:], spans[1:] if spans else None)
         return NumberPhrase(-inner.value, inner.used + 1)
+    if not start and (part := _counted_fraction(words)):
+        return NumberPhrase(part, 2, "FRACTION")
     value, used = _cardinal(words[start:])
     if used:
         extra, more = _fraction_after(words[start + used :])
@@ -71,6 +73,8 @@ def read_number(words: list[str], spans: list[tuple[int, int]] | None = None) ->
 
 def _number_from_digits(words: list[str], spans: list[tuple[int, int]] | None) -> NumberPhrase:
     """Return the number that starts with digits, including an ordinal suffix or a fraction after it."""
+    if part := _counted_fraction(words):
+        return NumberPhrase(part, 2, "FRACTION")
     value = float(words[0].replace("−", "-"))
     adjacent = len(words) > 1 and spans is not None and spans[0][1] == spans[1][0]
     if adjacent and words[1] in {"st", "nd", "rd", "th"}:
@@ -149,6 +153,15 @@ def _continues(current: float, value: float) -> bool:
     """Return whether a number word may continue a number: "twenty five" and "hundred twenty", but not "twenty thirty"."""
     last_two = current % 100
     return (last_two == 0 and current >= 100 and value < 100) or (last_two >= 20 and last_two % 10 == 0 and 0 < value < 10)
+
+
+def _counted_fraction(words: list[str]) -> float:
+    """Return the value of "one third" or "three quarters" at the start of the words; 0 for other words."""
+    count = CARDINALS.get(words[0], int(words[0]) if words[0].isdecimal() else 0)
+    unit = words[1] if len(words) > 1 else ""
+    is_plural = unit.endswith("s")
+    part = FRACTIONS.get(unit.removesuffix("s"), 0.0)
+    return count * part if (count > 1) == is_plural and 0 < count * part < 1 else 0.0
 
 
 def _fraction_after(words: list[str]) -> tuple[float, int]:

@@ -34,6 +34,9 @@ _AFTER_RIGHT = frozenset({
 _PARTS = frozenset({"side", "lane", "edge", "end", "corner", "bank", "wing", "wall", "half"})
 """Nouns that make "the left" and "the right" a place."""
 
+_PARTS_OF_THINGS = frozenset({"turn", "arm", "leg", "foot", "wheel", "wing", "side", "flank", "indicator", "headlight"})
+"""Nouns that make "its left" and "their right" a part of a thing, or what it does."""
+
 _BEFORE_LEFT = frozenset({
     "are", "is", "were", "was", "people", "cars", "none", "nothing", "anything", "any", "have", "has", "got", "s", "ve", "someone",
     "somebody", "he", "she", "they", "who", "i",
@@ -89,6 +92,8 @@ def _is_direction(words: Sequence[Word], i: int, direction: str) -> bool:
     after = words[i + 1].text if i + 1 < len(words) else ""
     if before in {"the", "our", "its"} and after in _PARTS and direction in {"left", "right"}:
         return False  # "the light from the right side"
+    if before in {"its", "his", "her", "their"} and after.removesuffix("s") in _PARTS_OF_THINGS:
+        return False  # "time its right turn"
     if words[i].text == "right":
         is_tag = before == "," and after == "?"  # "nobody's there, right?"
         return not is_tag and after not in _AFTER_RIGHT and before not in {"all", "straight", ""}  # "Right, count the cars"

@@ -25,11 +25,16 @@ _NAMED = frozenset({
 
 @dataclass(frozen=True, slots=True)
 class StatedNumber:
-    """A number in an instruction, with its words."""
+    """A number in an instruction, with its words.
+
+    Attributes:
+        is_doubled: Whether "twice" is beside it: "twice 10 degrees", "10 degrees twice".
+    """
 
     value: float
     words: tuple[Word, ...]
     is_fraction: bool = False
+    is_doubled: bool = False
 
 
 _BEFORE_HALF = frozenset({"", ".", ",", "is", "are", "s", "ve", "have", "has", "got"})
@@ -83,13 +88,17 @@ def _stated_numbers(words: Sequence[Word]) -> list[StatedNumber]:
         after = words[i + read.used].text if i + read.used < len(words) else ""
         if read.used == 1 and after in {".", ")"} and read.value == listed and i + 2 < len(words):
             listed += 1
-        elif read.used and read.kind != "ORDINAL" and not _is_ignored(words, i, read.used):
-            stated_numbers.append(StatedNumber(abs(read.value), tuple(used), read.kind == "FRACTION"))
+        elif read.used and read.kind != "ORDINAL" and not _is_ignored(words, i, read.used, may_be_vague=read.kind != "FRACTION"):
+            is_doubled = any(
+                word.text == "twice" for word in (*words[max(i - 1, 0) : i], *words[i + len(used) : i + len(used) + 2])
+            )
+            stated_numbers.append(StatedNumber(abs(read.value), tuple(used), read.kind == "FRACTION", is_doubled))
         i += len(used)
     return stated_numbers
 
 
-def _is_ignored(words: Sequence[Word], start: int, used: int) -> bool:
+def _is_ignored(words: Sequence[Word], start: int, used: int, *, may_be_vague: bool) -> bool:
+    """Return whether a number states no amount: it is part of a name, a description or a remark, or vague as in "the one"."""
     before = words[start - 1].text if start else ""
     used_words = words[start : start + used]
     after = words[start + used].text if start + used < len(words) else ""
@@ -107,7 +116,7 @@ def _is_ignored(words: Sequence[Word], start: int, used: int) -> bool:
     if used_words[0].text == "half" and before in _BEFORE_HALF and after in _AFTER_HALF:
         return True  # "the net's half out of frame", "half the crowd is cut off"
     return before in {*_NAMED, "the", "these", "those"} or any(
-        word.is_described or word.is_negated or word.text in _VAGUE for word in used_words
+        word.is_described or word.is_negated or (may_be_vague and word.text in _VAGUE) for word in used_words
     )
 
 
@@ -125,6 +134,8 @@ def _plan_values(stated: StatedNumber, evidence: Evidence) -> list[float]:
     """Return the numbers with which a plan may express a stated number."""
     value = stated.value
     values = [value * unit for unit in _UNIT_FACTORS]
+    if stated.is_doubled:
+        values.append(2 * value)
     if value:
         values.append(1 / value)
     if stated.is_fraction:

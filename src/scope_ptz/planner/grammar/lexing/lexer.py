@@ -10,6 +10,7 @@ from functools import lru_cache
 from scope_ptz.english.grammar.numbers import NUMBER_WORDS, read_number
 from scope_ptz.english.grammar.parts_of_speech import parts_of_speech
 from scope_ptz.english.grammar.tokens import Token, tokenise
+from scope_ptz.english.numerals import FRACTIONS
 from scope_ptz.planner.grammar.lexing.lexicon import longest_phrase, phrases
 from scope_ptz.planner.grammar.lexing.preset_names import preset_at, preset_key, short_names
 from scope_ptz.planner.grammar.lexing.spelling import corrected_word, is_english, within_one_edit
@@ -204,11 +205,17 @@ def _can_occur(words: Sequence[str], i: int, length: int, classes: frozenset[str
         return False  # "bring it up 11"
     if any(preset_at(words[j : i + length + 3], presets)[0] for j in range(i + 1, i + length)):
         return False
-    if words[i + length - 1] == "of" and "PREP" in classes and i + length < len(words) and is_number_word(words[i + length]):
-        return False  # "a pan right of 8 degrees"
+    if words[i + length - 1] == "of" and "PREP" in classes and _is_amount(words[i + length : i + length + 2]):
+        return False  # "a pan right of 8 degrees", "a rotation to the left of a third of a circle"
     if classes.isdisjoint(_ENDING) or words[i : i + length] in (["if", "so"], ["if", "not"]):
         return True
     return after in _AFTER_ENDING or not phrases().get((after,), frozenset()).isdisjoint(_COMMANDS)
+
+
+def _is_amount(words: Sequence[str]) -> bool:
+    """Return whether words begin with a number or a fraction: "8 degrees", "a third", "half"."""
+    is_number = bool(words) and is_number_word(words[0])
+    return is_number or any(word in FRACTIONS for word in (words[1:] if words[:1] in (["a"], ["an"]) else words[:1]))
 
 
 def _is_other_noun(word: str) -> bool:

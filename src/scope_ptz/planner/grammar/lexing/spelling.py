@@ -10,6 +10,7 @@ from scope_ptz.english.grammar.lexicon import lexicon
 from scope_ptz.english.grammar.numbers import NUMBER_WORDS
 from scope_ptz.english.grammar.parts_of_speech import parts_of_speech, verb_form
 from scope_ptz.english.nouns import plural_noun
+from scope_ptz.english.numerals import FRACTIONS
 from scope_ptz.planner.grammar.lexing.lexicon import known_words, spelling_lists
 
 _MIN_CHARS = 5  # in shorter words, only exchanged, doubled and missing letters count as typing errors
@@ -117,4 +118,5 @@ def _is_typing_error(word: str, known: str) -> bool:
 @lru_cache(maxsize=8192)
 def is_english(word: str) -> bool:
     """Return whether a word is English, so that it is not treated as a misspelling."""
-    return word in known_words() or word in spelling_lists()["real"] or lexicon().concept(word) is not None or is_common_noun(word)
+    is_listed = word in known_words() or word in FRACTIONS or word in spelling_lists()["real"]
+    return is_listed or lexicon().concept(word) is not None or is_common_noun(word)

@@ -16,9 +16,12 @@ from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_s
 from scope_ptz.planner.grammar.parsing.parts.statements import is_comment, is_statement, without_future_time
 from scope_ptz.planner.grammar.parsing.segments.clause_starts import STATEMENT
 
-_WISH = r"(WRAPPER|SELF (want|need|wish|MODAL like) to) (see|look at|check|SEE|READ|have_a_look at) _+"
-_FAILING = r"(SELF|PRON) (MODAL|DOV) (not|hardly|barely) _+|SELF (be|HAVEV|BE|LOWER-ED) _+"
+_WISH = (
+    r"(WRAPPER|SELF (want|need|wish|MODAL like) to) (see|look at|check|SEE|READ|have_a_look at|inspect|examine|study|view|watch) _+"
+)
+_FAILING = r"(SELF|PRON) (MODAL|DOV) (not|hardly|barely|only|just) _+|SELF (be|HAVEV|BE|LOWER-ED) _+"
 _STATE = (
+    r"only DET? FREE{1,3} SELF (MODAL|HAVEV)? (SEE|SEE-ED|get|have|HAVEV) (VISIBLE|here|NOW|FILLER)*|"
     r"all SELF (MODAL|HAVEV)? (SEE|SEE-ED|get|have|HAVEV) (BE|VISIBLE)+ _+|"
     r"(it|PRON|DET FREE|DET VIEWNOUN|DET PICTURE|there) (BE|looks|MODAL) (AMOUNTISH)* (too|so|very|ADVERB|not|FREE|in|DET|LOT) _*"
 )
@@ -145,7 +148,8 @@ def only_gives_reason(clause: Clause, clause_count: int) -> bool:
     if not (match_start(STATEMENT, clause.lexemes) or is_statement(clause.lexemes) or is_comment(clause.lexemes)):
         return False
     knows = match_start("(FILLER|COMMA|NOW)* SELF know (this|it|that|you|DET)", clause.lexemes)  # "I know this sounds picky"
-    asks = frozenset({"tell", "whether"} if knows else {"know", "tell", "whether"})
+    is_lost = match_start("(FILLER|COMMA|NOW)* SELF DOV not know (what|how|why) (i|we)", clause.lexemes)  # "... what I've pressed"
+    asks = frozenset({"tell", "whether"} if knows or is_lost else {"know", "tell", "whether"})
     if any(x.has("HOWMANY") or x.word in asks or x.word == "ones" for x in clause.lexemes):
         return False  # "I need to know how the bins are placed"
     denies = any(x.has("NOT") for x in clause.lexemes)

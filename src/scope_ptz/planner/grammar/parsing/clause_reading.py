@@ -181,7 +181,10 @@ class ClauseSequenceReader:
             "(DET|my|our)? FREE{1,2} (wants|needs|wanted) (DET)? (FREE)? (look|view|SEE|to SEE|VIEWNOUN|eyes)", clause.lexemes
         )
         return (
-            bool(is_inspecting or is_wish) and isinstance(self.last_step, Move) and clause.link in {",", ""} and self.next_index > 1
+            bool(is_inspecting or is_wish)
+            and isinstance(self.last_step, Move | Track)
+            and clause.link in {",", ""}
+            and self.next_index > 1
         )
 
     def _is_alternative(self, clause: Clause, steps: tuple[Step, ...]) -> bool:

@@ -54,6 +54,7 @@ from scope_ptz.planner.grammar.parsing.remarks import adds_nothing
 from scope_ptz.planner.grammar.parsing.restatements import is_reason_for_zoom, repeats_previous_move
 from scope_ptz.planner.grammar.parsing.topics import topic_count, topic_step
 from scope_ptz.planner.grammar.parsing.tours import TourReader
+from scope_ptz.planner.grammar.parsing.turns_in_steps import in_single_move, is_single_move
 
 _SEARCHING = frozenset({"look_for", "search_for", "have_a_look_for", "take_a_look_for"})
 _REACHED = (
@@ -82,6 +83,8 @@ class SentenceReader(TourReader):
         at_once: list[Step] = []  # steps since the last "then" or full stop
         while self.next_index < len(self.clauses):
             start, linked = self.next_index, self._linked()
+            if any(is_single_move(x) for clause in self.clauses[start : self.next_index] for x in clause.lexemes):
+                linked = [replace(each, step=in_single_move(each.step)) for each in linked]
             out = _with_merged_conditions(compose(linked, out))
             if self.clauses[start].link in {"then", "."}:
                 at_once = []

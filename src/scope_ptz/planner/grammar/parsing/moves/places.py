@@ -63,7 +63,7 @@ def go_step(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
         (
             r"(SWITCH|CARRY|SWITCH-ING|CARRY-ING|TURN|TAKE|back|BACK|to|it|CAMERA|DET|FILLER|FIRSTLY|SELF|RESET|GLUE|"
             r"VIEWNOUN|PRON|LEADFILLER|AIM|straight|PAN|up|at|from)* HOME (FILLER|FIRSTLY|ORDINAL|now|again|position|"
-            r"VIEWNOUN|GLUE|PRESETNOUN|CAMERA)*|(FILLER)* RESET (FILLER|GLUE|to|HOME|CAMERA|DET|VIEWNOUN|PRESETNOUN)*|"
+            r"VIEWNOUN|GLUE|PRESETNOUN|DET? CAMERA)*|(FILLER)* RESET (FILLER|GLUE|to|HOME|CAMERA|DET|VIEWNOUN|PRESETNOUN)*|"
             r"(FILLER)* park (CAMERA|it|DET)* (FILLER)*"
         ),
         lexemes,

@@ -8,7 +8,7 @@ from typing import Literal
 from scope_ptz.planner.grammar.instruction_tree import Aim, Amount, Move, Part, Step, Turn, Unclear
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 from scope_ptz.planner.grammar.parsing.moves.returns import BACK_UP
-from scope_ptz.planner.grammar.parsing.moves.turn_words import ALLOWED_IN_TURNS, TURN_VERBS
+from scope_ptz.planner.grammar.parsing.moves.turn_words import ALLOWED_IN_TURNS, SURFACE_BELOW_OR_ABOVE, TURN_VERBS
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start, search
 
 AXIS_TARGET = (
@@ -44,7 +44,7 @@ def special_turn(lexemes: Sequence[Lexeme]) -> Step | None:
     )
     if full_match(rf"{glue} (REVERSE|(TURN|TURN-ING|CARRY|AIM) {glue} (AROUND|REVERSE)) {glue} {opposite}", lexemes):
         return Move((Turn("pan", 1, Amount("degrees", 180.0)),))
-    if match := full_match(rf"{glue} (?P<way>VERTICALUP|VERTICALDOWN) {glue}", lexemes):
+    if match := full_match(rf"{glue} (?P<way>VERTICALUP|VERTICALDOWN) ({SURFACE_BELOW_OR_ABOVE})? {glue}", lexemes):
         return Move((Turn("tilt", 1 if match["way"][0].has("VERTICALUP") else -1, Amount("limit")),))
     if (
         match := full_match(rf"(CARRY|AIM|SWITCH|TURN|FILLER|CAMERA|DET|GLUE)* (to|at) (?P<targets>({AXIS_TARGET})+)", lexemes)

@@ -26,6 +26,11 @@ ALLOWED_IN_TURNS = (
 """Classes of words that a turn may contain besides amounts and directions."""
 
 
+SURFACE_BELOW_OR_ABOVE = (
+    "(at|to|towards|toward|onto) (DET)? (ground|floor|pavement|road|street|tarmac|grass|path|sky|ceiling|clouds) (?!FREE)"
+)
+"""What a camera sees at the limit of its tilt: "all the way down at the ground" asks for the limit, not for a close-up."""
+
 _NUMBER = "(AMOUNTISH|and)* (?P<number>NUM) (?!VIEWNOUN|PICTURE) (AMOUNTISH)*"
 
 
@@ -122,6 +127,10 @@ def find_parts(lexemes: Sequence[Lexeme]) -> tuple[TurnParts, list[Lexeme], list
             allowed.append(first)
             i += 1
             continue
+        if (ground := match_start(SURFACE_BELOW_OR_ABOVE, rest)) is not None and _ends_at_vertical_limit(found):
+            allowed += rest[: ground.size]
+            i += ground.size
+            continue
         match, name = next(((m, name) for name, pattern in _CHUNKS if (m := match_start(pattern, rest)) and m.size), (None, ""))
         if match and not (first.has("TURNNOUN", "CARRY", "AIM", "TILT", "PAN", "TURN") and name in {"lot", "little"}):
             _add(found, name, match)
@@ -133,6 +142,11 @@ def find_parts(lexemes: Sequence[Lexeme]) -> tuple[TurnParts, list[Lexeme], list
             unread.append(first)
             i += 1
     return found, allowed, unread
+
+
+def _ends_at_vertical_limit(found: TurnParts) -> bool:
+    """Return whether the parts found so far tilt all the way up or down."""
+    return Amount("limit") in found.amounts and bool(found.directions) and set(found.directions) <= {"UP", "DOWN"}
 
 
 def _add(found: TurnParts, name: str, match: Match) -> None:

@@ -61,11 +61,15 @@ ZOOM_TOPICS = (
     "HALVE",
 )
 _SIZES = frozenset({"close", "big", "large", "near", "tight", "wide"})
+_AS_NOW = "((as|that|NOW)* (SELF HAVEV|(it|PRON|DET? PICTURE|DET? VIEWNOUN) (BE|DOV|appears|looks)) (NOW|now|FILLER)*)?"
+"""Words that compare with the current picture: "half the size it is now", "twice as close as it does now"."""
 _MAG = (
-    r"((as|of|DET|current|present)* (ASCLOSE|ZOOMNOUN|level|close|big|large|near|tight|wide)|(of)? what (SELF HAVEV|it BE) (now)?)"
+    r"((as|of|DET|SELF|current|present)* (ASCLOSE|ZOOMNOUN|level|close|big|large|near|tight|wide|value) "
+    rf"{_AS_NOW}|(of)? what (SELF HAVEV|it BE) (now)?)"
 )
 _RELATIVE_MAG = (
-    r"((as|of|DET|current|present)+ (ZOOMNOUN|level|close|big|large|near|tight|wide)|(as|of|DET|current|present)* ASCLOSE)"
+    r"((as|of|DET|current|present)+ (ZOOMNOUN|level|close|big|large|near|tight|wide)|"
+    r"(as|of|DET|current|present)* (?!ZOOMNOUN) ASCLOSE)"
 )
 """The base that an amount multiplies. "3 times the magnification" is relative to the current zoom; "3x zoom" is absolute."""
 
@@ -151,7 +155,7 @@ def zoom_step(lexemes: Sequence[Lexeme]) -> Step | None:
                 lexemes,
             )
         )
-        or bool(search("as (big|large|close|wide)|bigger|larger", lexemes))
+        or bool(search("as (big|large|close|wide)|bigger|larger|(FRACTION|TWICE|THRICE|NUM X) (of)? DET size", lexemes))
     ) and not any(x.has("PAN", "TILT", "TURN", *DIRECTIONS) or (x.has("FREE") and x.word not in _SIZES) for x in lexemes)
     if (
         not any(x.has(*ZOOM_TOPICS, *(f"{topic}-ING" for topic in ZOOM_TOPICS)) for x in lexemes)
@@ -284,6 +288,11 @@ def _step(amounts: list[tuple[str, float]], allowed: Sequence[Lexeme], lexemes: 
     return Repeat((step,), times) if times > 1 and isinstance(step, Move) else step
 
 
+def _is_multiple(lexemes: Sequence[Lexeme]) -> bool:
+    """Return whether a factor multiplies the current zoom: "make it twice as big", unlike "set it to 2x"."""
+    return search("TWICE|THRICE|NUM X (as (close|big|large|near|tight)|DET ASCLOSE|(?!ZOOMNOUN) ASCLOSE)", lexemes) is not None
+
+
 def _zoomed(amount: tuple[str, float], sign: int, *, bare: bool, lexemes: Sequence[Lexeme]) -> Step:
     """Return the step that zooms in or out by an amount, or in an unstated direction."""
     kind, value = amount
@@ -293,7 +302,7 @@ def _zoomed(amount: tuple[str, float], sign: int, *, bare: bool, lexemes: Sequen
         return _NOT_CLEAR
     if kind == "to" and value > _MAX_PLAUSIBLE_FACTOR and not search("X", lexemes):
         return Unclear("Is that a factor or a percentage?")
-    if kind == "to" or (kind == "factor" and bare and search(r"(set|put|make|ABSOLUTE) ", lexemes)):
+    if kind == "to" or (kind == "factor" and bare and search(r"(set|put|make|ABSOLUTE) ", lexemes) and not _is_multiple(lexemes)):
         return Move((Aim("zoom", value, sign),)) if value > 0 else Unclear("To how many times shall I zoom?")
     if kind in {"little", "lot", "plain"}:
         factor = {"little": LITTLE_FACTOR, "lot": LOT_FACTOR}.get(kind, PLAIN_FACTOR)
@@ -308,7 +317,10 @@ def _zoomed(amount: tuple[str, float], sign: int, *, bare: bool, lexemes: Sequen
         if sign < 0 and value >= 100:
             return Unclear("I can zoom out by less than 100 per cent. By how many times shall I zoom out?")
         return Move((Zoom("percent", (sign or 1) * value),))
-    if kind == "fraction" and search("FRACTION as (close|big|large|near|tight)", lexemes):
+    is_part = search("FRACTION as (close|big|large|near|tight)", lexemes) or (
+        sign <= 0 and search("FRACTION (of)? DET size", lexemes)
+    )
+    if kind == "fraction" and is_part:
         return Move((Zoom("factor", value),))
     if kind == "fraction":
         if bare:

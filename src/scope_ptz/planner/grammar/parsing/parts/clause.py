@@ -27,7 +27,7 @@ DANGLING = frozenset({"on", "onto", "to", "at", "of", "with", "by", "for", "towa
 
 AS_FAR_AS = (
     r"(as)? (?P<extent>far|much|high|low|wide|close|tight|near|FREE) (DET|FREE|VIEWNOUN|PICTURE)* (as|as_the) (DET|PRON|SELF|"
-    r"CAMERA|possible|she|it)+ (MODAL|DOV|CARRY|CARRY-S|get|will|can|go|goes|manage|allows|FREE)*"
+    r"CAMERA|ZOOMNOUN|possible|she|it)+ (MODAL|DOV|CARRY|CARRY-S|get|will|can|go|goes|manage|allows|FREE)*"
 )
 """The pattern for "as far as it goes", which means all the way."""
 

@@ -105,7 +105,11 @@ def _subject_ends(lexemes: Sequence[Lexeme]) -> Iterator[int]:
 
 
 def _is_only_adjective(lexemes: Sequence[Lexeme]) -> bool:
-    """Return whether lexemes are a single adjective: "(dust's) thick", unlike "(dust's) edge"."""
+    """Return whether lexemes are only a predicate: "(dust's) thick", "(shift's) nearly over", unlike "(dust's) edge"."""
+    while len(lexemes) > 1 and parts_of_speech(lexemes[0].word) == {"ADV"}:
+        lexemes = lexemes[1:]
+    if len(lexemes) == 1 and lexemes[0].word in {"over", "done", "finished"}:
+        return True
     return len(lexemes) == 1 and lexemes[0].has("FREE") and "ADJ" in parts_of_speech(lexemes[0].word)
 
 

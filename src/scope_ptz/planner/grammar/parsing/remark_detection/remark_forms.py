@@ -55,7 +55,9 @@ EXCLAMATION = re.compile(
 
 EXEMPT = re.compile(
     r"(?:oh |well |just )*look at (?:that|him|her|them|those)|(?:focus|end stop|backlash|range|function|bearing|speed"
-    r"|limit) (?:test|check)"
+    r"|servo|motor|drive|limit|limit switch|end switch) (?:test|check)"
+    r"|(?:just )?(?:checking|testing|measuring|verifying|watching) (?:the |its |for )?(?:(?:pan|tilt|zoom|focus|tracking) )?"
+    r"(?:smoothness|speed|accuracy|performance|response|backlash|jitter|lag)"
     r"|the [\w ]+? (?:is|are)(?: not|n['’]t)(?: \w+){0,2} (?:in|into) (?:the )?(?:frame|picture|view|shot)"
     r"|(?!the )[a-z]+(?: [a-z]+)? in (?:the )?(?:shot|way|picture|view)"
     r"|(?:i )?(?:don't|do not) care\b[\w' ]*"

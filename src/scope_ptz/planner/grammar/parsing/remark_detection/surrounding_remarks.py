@@ -48,6 +48,7 @@ _RESTRICTION = (
     r"|actually|rather|means?|meant(?! to)|(?:i|we)(?:'d| would)? (?:want|need|like|prefer)(?! to see)|interested"
     r"|after the|asking|talking"
     r"|not (?:the|to|that|this|there|here|in|on)|isn't (?:the|that|this)"
+    r"|(?:a single|one) (?:\w+ )?(?:move|movement|motion|command|go|step)"
 )
 _REQUEST = (
     r"must(?! be \w+ed\b)|should(?! (?:be (?:in|here|back|due|along|ready)|have))|shall|ought|you|your|please|(?<!see "
@@ -78,6 +79,8 @@ _HARMLESS = re.compile(
     r"|\b\w+ (?:is|are|was|were|keeps?) asking(?: me| us)?(?: about (?:it|them|this|that))?\W*$"
     r"|\b(?:i|we) (?:can['’]?t|cannot|could not|couldn['’]?t) (?:tell|make out|see|work out|read)"
     r"(?: from here)? (?:if|whether|what|which|who)\b"
+    r"|\b(?:pan|tilt|zoom) (?:smoothness|speed|accuracy|performance|response|motors?|gears?|mechanism|backlash)\b"
+    r"|\b(?:its|his|her|their) (?:left|right)[- ](?:turn|arm|leg|foot|wheel|wing|side|flank|indicator|headlight)s?\b"
     r"|\bi (?:just )?want(?:ed)? the (?:whole )?(?:lot|thing|works)\b|\bunder the camera\b"
     r"|\b(?:won['’]?t|will not|doesn['’]?t|never) stop (?!pan|tilt|zoom|turn|mov|track|follow|point)\w+ing\b"
     r"|\bshould (?:arrive|turn up|come|land|be there)\b|\bshould be (?:bringing|coming|arriving|landing|starting"

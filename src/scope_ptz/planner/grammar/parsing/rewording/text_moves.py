@@ -22,6 +22,8 @@ _AS_FAR = (
     r"as (?:possible|(?:it|you|she|he|the camera)(?:['’]ll| will| can| could)?(?: ever| possibly)?"
     rf"(?: go(?:es)?| tilts?| pans?| turns?| moves?)?){_END}"
 )
+_TIME = r"(?:half an?|an?|\d+(?:\.\d+)?|[a-z]+(?:-[a-z]+)?)(?: and a half)? ?(?:s|secs?|seconds?|mins?|minutes?)(?: and a half)?"
+_ABOUT = "(?:about|around|roughly|some|say|maybe|perhaps) "
 _MAST = "tower|mast|roof|pole|camera|cam"
 
 MOVES = (
@@ -35,12 +37,25 @@ MOVES = (
     (r"^home in on ", "zoom in on "),
     (r"\b(left|right|up|down), \1\b", r"\1"),
     (r"\bzoom (?:in )?(?:on to|onto) ", "zoom in on "),
-    (
-        r"\bone (third|quarter|half|eighth|fifth|sixth) of a (?:full |whole |complete )?(?=turn|circle|rotation|revolution)",
-        r"a \1 of a ",
-    ),
     (r"\bclick (?=an? |one |the |some |two |three )", "take "),
     (r"\balter (?=the |your )", "change "),
+    (r"\b(?:begin|commence) (?=(?:follow|track|trail|shadow)\w*ing\b)", "start "),
+    (
+        r"\b(?:relative |incremental )?(pan|tilt)(?: (?:move|movement|adjustment|step))?[,:] (?:of |by )?"
+        r"(?=(?:minus|plus|[-+]?\d))",
+        r"\1 ",
+    ),
+    (
+        r"^(?:very )?(?:fine|small|minor|slight|coarse) (?:adjustment|correction|tweak)[:,] (?:of )?"
+        rf"(?=(?:\d|\w+ (?:deg|degrees?)\b|{_DIRECTIONS}|pan|tilt|zoom))",
+        "",
+    ),
+    (
+        r",? (?:executed|performed|done|made|carried out) (?:as|in) (?:one|a) "
+        r"(?:single |combined |simultaneous |joint |continuous )*"
+        r"(?:move|movement|motion|command|operation)\b",
+        " in one move",
+    ),
     (r"\b(closer|better|good|quick|little) peek\b", r"\1 look"),
     (r"^closer(?:,? please)?, a lot closer\b", "a lot closer"),
     (r"\bdegrees or so,? ", "degrees "),
@@ -48,7 +63,18 @@ MOVES = (
     (r"\b(?:fully|completely) zoomed (in|out)\b", r"zoom all the way \1"),
     (r"^it should be zoomed (in|out) (\w+ percent)(?: more)?\b", r"zoom \1 \2"),
     (r"\breturn (?:it|the camera|the tilt) to level\b", "level the camera"),
-    (r",? duration:? (?=(?:\w+|\d+) (?:minutes?|seconds?))", " for "),
+    (rf",? duration:? (?=(?:{_TIME})\b)", " for "),
+    (
+        r"\b((?:follow|track|trail|tail|shadow|watch|stay|keep)\w*\b[^.;]*?),? (?:and |then )*(?:to )?"
+        r"(?:continue|carry on|keep going|keep (?:it|that|this) up|keep at it|do (?:so|that))"
+        rf"(?: (?:doing (?:so|that|it)|to do so|tracking|following))?,? (?=for (?:{_ABOUT})?(?:{_TIME})\b)",
+        r"\1 ",
+    ),
+    (
+        rf", (?:{_ABOUT})?({_TIME})(?: or so)? (?:ought to|should|will|would) (?:do|be)\b"
+        rf"(?: (?:it|nicely|fine|enough|plenty|ample))*",
+        r" for \1",
+    ),
     (r"^i(?:['’]d| would) like the (?:image|picture|view) (\d+ ?%|\w+ percent) closer\b[^.;]*", r"zoom in \1"),
     (r",? (?:do )?(?:a )?full sweep all around\b", " all around"),
     (r"\bzoom right (in|out), max(?:imum)?\b", r"zoom all the way \1"),
@@ -123,11 +149,6 @@ MOVES = (
         r"|moves?|walks?|drives?|comes?)(?: along| past| by| around| through)?(?=[,.]|$)",
         "",
     ),
-    (
-        r", ((?:\d+|[a-z]+(?:-[a-z]+)?) (?:seconds|minutes)) (?:ought to|should|will|would) (?:do|be enough|be "
-        r"plenty)(?: it| nicely| fine)?",
-        r" for \1",
-    ),
     (r"\bi (want|need) (?=see\b)", r"i \1 to "),
     (r"\b(?:in|by) (ten|five|twentie|fifteen|thirtie)s (?=until|till|til)", lambda match: _steps(match[1])),
     (
@@ -137,7 +158,8 @@ MOVES = (
     ),
     (
         r"\b(?:(?:all the way|right|round|around|over) )*"
-        r"to (?:the|its) (lower|upper|left|right)(?:most|[- ]hand)? (?:mechanical |physical |end |hard )*(?:limit|stop)\b",
+        r"to (?:the|its) (lower|upper|left|right)(?:most|[- ]hand)? "
+        r"(?:mechanical |physical |end |hard )*(?:limit|stop|end of travel)\b",
         lambda match: f"all the way {_ENDS[match[1].lower()]}",
     ),
     (r"\b(?:go|come|move|pull) right (in|out)(?=[.,!;]|$| then\b| and\b)", r"zoom all the way \1"),
@@ -162,7 +184,11 @@ MOVES = (
         r"\bdon['’]?t be (tak|zoom|go|mov|pan|turn|follow|count|track)(?:k|m|n)?(?:e)?(?:in|ing)\b",
         lambda match: f"don't {_GERUNDS[match[1].lower()]}",
     ),
-    (r"\b(?:drive|run|send) (?:the |that )?(zoom|pan|tilt) (?=all|to|left|right|up|down|in|out)", r"\1 "),
+    (
+        r"\b(?:drive|run|send|take|slew) (?:the |that )?(zoom|pan|tilt)(?: axis| motor| drive)? "
+        r"(?=all|to|left|right|up|down|in|out|by|\d)",
+        r"\1 ",
+    ),
     (
         r"\b(?:can|could) (?:it|the camera|she) (?:please )?(go|come|move|turn|look|point|swing) (?=an?\b|to\b"
         r"|further|left|right|up|down|slightly)",
@@ -187,7 +213,6 @@ MOVES = (
     (r"^last of all,? ([^;.]+)[;.] (?:start|begin) with (.+?)\W*$", r"\2, then \1"),
     (r"^(?:see|check) (?:if|whether) (the [\w ]+?) is (\w+ing) and if (?:it is|so),? ", r"if \1 is \2, "),
     (r" should (?:just )?(?:about )?do (?:it|nicely)\W*$", ""),
-    (r", ((?:half a|a|one|two) minutes?(?: and a half)?) (?:ought to|should|will|would) do(?: it| nicely)?\b", r" for \1"),
     (r"\bnip it (up|down|left|right)\b", r"move it \1"),
     (
         r"\b(?:point|aim)(?: the camera)? at (-?\d+) degrees,? (?:and )?then at (-?\d+) degrees",
@@ -199,7 +224,6 @@ MOVES = (
         r"\1 \2",
     ),
     (r", (?:and )?i mean (a lot|all the way|a bit)\W*$", r" \1"),
-    (r", (\d+ ?(?:s|secs?|min|mins)|[\w-]+ (?:seconds|minutes)) should be (?:enough|plenty)\W*$", r" for \1"),
     (r"\b(?:put it|go|come|bring it) (?:back|down|up) to (\d+(?:\.\d+)?) ?x\b", r"zoom to \1x"),
     (r"^as (?:wide|far out) as (?:she|it|he) goes\W*$", "zoom all the way out"),
     (r"\bgo as wide as (?:you can|it goes|possible)\b", "zoom all the way out"),

@@ -15,6 +15,12 @@ _NOTHING_ELSE = (
     r"|nothing(?: to do| needs doing)?"
 )
 
+_FOLLOWING = (
+    r"(?:(?:follow|track|trail|tail|shadow|watch)\w*|stay(?:ing)? (?:on|with)"
+    r"|keep(?:ing)? (?:on|with|an eye|your eye|eyes|the camera on))"
+)
+_WAY = "(?:out|in|off|away|past|by|along|around|round|about|across|over|through|up|down|home|back|to|into|onto|from|towards)"
+
 REMARKS = (
     (r",? (?:and )?i(?: just)?(?: want| need|['’]d like| would like) to show (?:him|her|them|(?:my|our) \w+)\W*$", ""),
     (rf"^([^,]*),\s*(?:{_VOCATIVES})(?=\s*[,.!?;]|\s*$)", r"\1"),
@@ -100,8 +106,8 @@ REMARKS = (
         r"\2 \1",
     ),
     (
-        r",? if (?:it|that)(?: is|['’]s| is not|['’]s not| isn['’]t)(?: not)? (?:an?|too much|any) (?:bother|trouble"
-        r"|problem|hassle)\b",
+        r"(?:^|,? )if (?:it|that)(?: is|['’]s| is not|['’]s not| isn['’]t)(?: not)? (?:an?|too much|any|no) (?:bother|trouble"
+        r"|problem|hassle|inconvenience)\b",
         "",
     ),
     (r",? should be (?:about |around )?(?:\d+|two|three|four|five|six|seven|eight|nine|ten|a dozen)\W*$", ""),
@@ -176,6 +182,12 @@ REMARKS = (
         r"\1",
     ),
     (r",? and (?:stay|remain|wait) (?:there|put|here)\b", ""),
+    (
+        rf"\b({_FOLLOWING}\b[^;]*?),? while (?:(?:it|he|she) (?!is\b|was\b|has\b|does\b)\w+s"
+        rf"|they (?!are\b|were\b|have\b|do\b|can\b)\w+)(?: {_WAY})*"
+        rf"(?: {_WAY} (?:the|an?|his|her|its|their) [\w-]+)?(?=\s*[,.;!?]|\s*$)",
+        r"\1",
+    ),
     (r",? while (?:it|he|she|they) (?:taxis|walks?|drives?|moves?|goes?|works?|turns?)\b", ""),
     (r"^(?:a )?bit too (?:close|tight|far|wide|high|low)(?:,? this)?[.!,] ", ""),
     (r", who is, i (?:believe|think|fancy), [^?.;]*", ""),

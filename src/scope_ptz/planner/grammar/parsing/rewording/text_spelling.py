@@ -43,6 +43,8 @@ WORDS = {
     "wanna": "want to",
     "wether": "whether",
     "wi": "with",
+    "wil": "will",
+    "wll": "will",
     "wld": "would",
     "wots": "what's",
     "wud": "would",
@@ -52,6 +54,7 @@ WORDS = {
 """Misspelt, shortened and dialect words with their standard forms."""
 
 SPELLING = (
+    (r"(?<=\w)\s*(?:\.{2,}|…)(?=\s+\w)", ","),
     (r"\ball way\b", "all the way"),
     (r"\btheres\b", "there's"),
     (

@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 
 _PICTURES = "photo|picture|pic|snap|shot|still"
+_MOVED = re.compile(r"\b(?:left|right|up|down|(?:pan|tilt|zoom)\w*(?! in on| on))\b[^,.;]*[,.;] $", re.IGNORECASE)
+"""A clause that turns or zooms the camera, at the end of a text."""
 
 _MOVES = re.compile(r"\b(?:pan|tilt|zoom|turn|move|swing|rotate|look|lift|raise|lower|left|right|up|down|in|out)\b", re.IGNORECASE)
 
@@ -79,9 +81,9 @@ VIEWS = (
     (r"\bcloseup\b", "close-up"),
     (r"^(?:i )?need to see ([^,.]+?)[,.] zoom (?:in )?(?:to|on|onto) it\b", r"zoom in on the \1"),
     (
-        r"\b(?:i )?(?:wish|want|would like|need) to (?:examine|inspect|study) ([^,.;]+?)(?: more closely| up close| "
-        r"closely| in detail)?\W*$",
-        r"zoom in on \1",
+        r"\b(?:i )?(?:wish|want|would like|need) to (?:examine|inspect|study) (?P<thing>[^,.;]+?)"
+        r"(?P<detail> more closely| up close| closely| in detail)?\W*$",
+        lambda match: _inspected(match),
     ),
     (r"^(?:stick|stay|keep) (?:with|on) (?=(?:the|that|him|her|it|them|this)\b(?! (?:left|right|move|pan|tilt|zoom)))", "follow "),
     (r"\b(?:i )?(?:need|want|would like|['’]d like)(?: to)? (?:see|look at) (?:more close|closer|more closely) ", "zoom in on "),
@@ -214,3 +216,9 @@ VIEWS = (
     ),
 )
 """Patterns with the words that replace them."""
+
+
+def _inspected(match: re.Match[str]) -> str:
+    """Return "zoom in on the hinge" for "I want to inspect the hinge"; after a move, such a wish is only its reason."""
+    is_reason = not match["detail"] and _MOVED.search(match.string[: match.start()]) is not None
+    return match[0] if is_reason else f"zoom in on {match['thing']}"

@@ -8,6 +8,7 @@ from scope_ptz.planner.grammar.lexing.lexer import lexemes_of
 from scope_ptz.planner.grammar.parsing.rewording.withdrawn_parts import depends_on_part_before
 
 _PICTURE = r"(?:pic|photo|picture|photograph|still|shot|snap|image)"
+_PLEASE = r"(?:please |(?:can|could|will|would) you )*"
 _NO = r"(?:(?:scratch that|actually|no|nah|nope|wait|sorry|oh)[, ]+)*"
 _LEAVE_OUT = (
     r"(?:(?:i|we) (?:no longer|don['’]?t) (?:need|want)|no|scratch|skip|strike|omit|forget|cancel|nvm|cut"
@@ -77,7 +78,8 @@ WITHDRAWALS = (
         "scratch that, ",
     ),
     (
-        r"^(?:follow|track|zoom in on|find|count|look at) [^,.]+[,.] *(?:(?:oh|no|actually|wait|sorry)[, ]+)*(?:never ?mind|forget)"
+        rf"^{_PLEASE}(?:follow|track|zoom in on|find|count|look at) [^,.]+[,.] *"
+        rf"(?:(?:oh|no|actually|wait|sorry)[, ]+)*(?:never ?mind|forget)"
         r"(?: about)? (?:him|her|it|them|that)[,.] *(?:[^,.]+, )?(?:just |instead )?(?=(?:go|take|count|zoom|pan|tilt|home)\b)",
         "",
     ),
@@ -122,7 +124,8 @@ WITHDRAWALS = (
         ", ",
     ),
     (
-        r"^(?:follow|track|zoom in on|find|count|look at) [^,.]+[,.] *(?:(?:nah|no|actually|oh)[, ]+)+(?:nvm|never ?mind)[, ]+"
+        rf"^{_PLEASE}(?:follow|track|zoom in on|find|count|look at) [^,.]+[,.] *"
+        rf"(?:(?:nah|no|actually|oh)[, ]+)+(?:nvm|never ?mind)[, ]+"
         r"(?=(?:follow|track|zoom|find|count|go|take|pan|tilt)\b)",
         "",
     ),
@@ -140,7 +143,8 @@ WITHDRAWALS = (
         "",
     ),
     (
-        r"^(?:follow|track|zoom in on|find|look at) [^,.]+[,.]+ *(?:(?:no|actually|wait|oh)[, ]+)*(?:cancel that,? [^,.]+,"
+        rf"^{_PLEASE}(?:follow|track|zoom in on|find|look at) [^,.]+[,.]+ *"
+        rf"(?:(?:no|actually|wait|oh)[, ]+)*(?:cancel that,? [^,.]+,"
         r"|leave (?:him|her|it|them) be(?: and|,)) (?:just )?(?=(?:find|follow|track|zoom|go|take|count|look)\b)",
         "",
     ),

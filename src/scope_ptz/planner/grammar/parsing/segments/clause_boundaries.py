@@ -32,6 +32,12 @@ from scope_ptz.planner.grammar.parsing.segments.subordinate_clauses import Subor
 _SETTING = f"{SET_THERE}|at (DET|LIMIT|full|maximum|max|minimum|min|FREE)* (ZOOM|ZOOMNOUN)|at (TIGHT|WIDE)|at NUM X"
 """The beginning of words that say how the camera is set at a preset: "... zoomed in", "... at full zoom", "... at 3x"."""
 
+_SIZE_TO_REACH = (
+    "(so|so_that)* (it|they|PRON|WHOLETHING|DET? PICTURE|DET VIEWNOUN) (BE|looks|look|appears) (FILLER)* "
+    "(FRACTION|TWICE|THRICE|NUM X) (as|of? DET size|bigger|larger|ASCLOSE)"
+)
+"""How large the picture is to be after a zoom: "zoom in so it's twice as close"."""
+
 _ASKS_MORE = "(what|which) FREE{1,2} (BE|HAVEV|DOV|MODAL) DET _|(what|which|who|where|WHQ) (BE|DOV|HAVEV) DET _"
 """The beginning of a question about something other than the previous count: "... and what does the notice say?"."""
 
@@ -311,7 +317,8 @@ class ClauseBoundaryDetector(SubordinateClauseDetector):
         ends = self.words[-1].has(
             "NUM", "DEG", "X", "PERCENT", "LITTLE", "LOT", "LIMIT", "MORE", "IN", "OUT", "AROUND", "REVERSE", "HOME", *DIRECTIONS
         )  # fmt: skip
-        return ends and not self._is_completed_by(self.lexemes[i:]) and self._is_remark(i)
+        is_completed = self._is_completed_by(self.lexemes[i:]) or match_start(_SIZE_TO_REACH, self.lexemes[i:]) is not None
+        return ends and not is_completed and self._is_remark(i)
 
     def _lists_targets(self, i: int) -> bool:
         """Return whether "tilt -10" continues a list of absolute targets: "go to pan 20 tilt -10 zoom 3"."""

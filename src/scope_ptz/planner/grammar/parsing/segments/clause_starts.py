@@ -66,7 +66,10 @@ NOUN_LIKE = (
 )
 
 
-ADJECTIVES = frozenset({"slow", "red", "blue", "green", "white", "black", "yellow", "big", "small", "new", "old", "last", "first"})
+ADJECTIVES = frozenset({
+    "slow", "red", "blue", "green", "white", "black", "yellow", "big", "small", "new", "old", "last", "first", "current",
+    "existing",
+})  # fmt: skip
 
 
 BEFORE_NOUN = ("DET", "PREP", "REL", "MODAL", "DOV", "NOT", "SELF", "WRAPPER", "KEEP", "WHQ", "HAVEV", "NEGATED", "ADVERB", "NUM")
@@ -137,7 +140,8 @@ TASK_NOUNS = frozenset({
 
 
 STATEMENT = (
-    r"((DET)? (FREE|CAMERA|VIEWNOUN|PICTURE)+ 's |all SELF MODAL? (HAVEV|SEE|SEE-ED|get)|FREE FREE? 's (PREP|FREE|DET|AMOUNTISH)|"
+    r"((DET)? (FREE|CAMERA|VIEWNOUN|PICTURE)+ 's |(all|only DET? FREE{1,3}) SELF MODAL? "
+    r"(HAVEV|SEE|SEE-ED|get)|FREE FREE? 's (PREP|FREE|DET|AMOUNTISH)|"
     r"(FREE)? (wants|needs)|WRAPPER |(SELF|PRON|SOMEONE|there|that|it) (MODAL|DOV|BE|HAVEV|FREE|SHOW|TELL|"
     r"CARRY)|(DET|all|FRACTION|LOT|FREE)+ (FREE|CAMERA|PICTURE|VIEWNOUN)* (BE|HAVEV|MODAL|DOV|WISH) |too "
     r"(much|FREE|LOT|DET)|MODAL not |DOV not SELF|(need|needs|want) (it|PRON|them) |DET FREE{1,2} (FREE|"

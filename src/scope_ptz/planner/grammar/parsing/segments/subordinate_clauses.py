@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from scope_ptz.english.grammar.parts_of_speech import verb_form
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 from scope_ptz.planner.grammar.parsing.parts.clause import DIRECTIONS, UNTIL_LIMIT, VERBS
 from scope_ptz.planner.grammar.parsing.parts.courtesy import GLAD
@@ -157,7 +158,8 @@ class SubordinateClauseDetector(SegmentationState):
             r"(SEE|TELL|READ|SHOW|COUNT|cover|catch|inspect|watch|view|avoid|keep|make|get|give|have|include|follow|"
             r"take_in|stay) (?!(to|LEFT|RIGHT|UP|DOWN))"
         )
-        if not match_start(verbs, rest) or self._is_question():
+        is_named = bool(match_start(verbs, rest))
+        if not (is_named or self._aims_at_goal(rest)) or self._is_question():
             return False
         moves = any(x.has("PAN", "TILT", "TURN", "RAISE", "LOWER", *DIRECTIONS) for x in self.words)
         sized_zoom = any(x.has("ZOOM", "ENLARGE", "WIDEN", "OUT", "WIDER") for x in self.words) and any(
@@ -165,6 +167,12 @@ class SubordinateClauseDetector(SegmentationState):
         )
         pictures = any(x.has("PICTURE") for x in self.words) and any(x.has("TAKE", "SNAP") for x in self.words)
         return not any(x.has("FREE") for x in self.words) and (moves or sized_zoom or pictures)
+
+    def _aims_at_goal(self, rest: Sequence[Lexeme]) -> bool:
+        """Return whether the words after "to" say what a move with an amount is for: "zoom out 30% to match the other view"."""
+        is_sized = any(x.has("NUM", "LITTLE", "LOT", "LIMIT", "PERCENT", "FRACTION", "TWICE") for x in self.words)
+        is_verb = bool(rest) and rest[0].has("FREE") and verb_form(rest[0].word) == "base"
+        return is_sized and is_verb and match_start("_ (DET|SELF|PRON)", rest) is not None
 
     def _zooms_in_on_thing(self) -> bool:
         """Return whether the clause so far names a thing to zoom in on: "frame the tanker so that it fills the picture"."""
@@ -179,5 +187,20 @@ class SubordinateClauseDetector(SegmentationState):
         return (
             not zooms
             and bool(search("BE|MODAL|HAVEV|SHOW|SHOW-S", words))
-            and not any(x.has("NUM", *DIRECTIONS, "REVERSE", "LEVEL", "HORIZON", "WHOLETHING", "AIM-ING", "SOMEONE") for x in words)
+            and not any(
+                x.has(
+                    "NUM",
+                    "FRACTION",
+                    "TWICE",
+                    "THRICE",
+                    *DIRECTIONS,
+                    "REVERSE",
+                    "LEVEL",
+                    "HORIZON",
+                    "WHOLETHING",
+                    "AIM-ING",
+                    "SOMEONE",
+                )
+                for x in words
+            )
         )

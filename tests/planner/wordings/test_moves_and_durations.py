@@ -1,0 +1,127 @@
+"""Wordings of moves, fractions, zooms, the home view and how long to follow something."""
+
+from __future__ import annotations
+
+import pytest
+
+from scope_ptz.geometry import Pose
+from scope_ptz.planner.plan import PlannedCall, plan
+from tests.planner.stage import Stage
+
+PRESETS = ("gate", "dock")
+
+
+def described(call: PlannedCall) -> str:
+    return f"{call.name}({', '.join(f'{name}={value}' for name, value in call.arguments.items())})"
+
+
+def calls(instruction: str) -> str:
+    return "; ".join(described(call) for call in plan(instruction, PRESETS).calls)
+
+
+@pytest.mark.parametrize(
+    ("instruction", "expected"),
+    [
+        ("Tilt all the way up, I want to inspect the gutter", "adjust_ptz(tilt_deg=90)"),
+        ("Pan right 35. We need to examine the hinge.", "adjust_ptz(pan_deg=35)"),
+        ("Pan right 35, I need to examine the hinge up close", "adjust_ptz(pan_deg=35); zoom_to_object(description=hinge)"),
+        ("I want to inspect the gutter", "zoom_to_object(description=gutter)"),
+        ("Go to the dock, I want to inspect the ladder", "go_to_preset(name=dock); zoom_to_object(description=ladder)"),
+    ],
+)
+def test_wish_to_inspect_after_a_turn_is_its_reason(instruction: str, expected: str) -> None:
+    assert calls(instruction) == expected
+
+
+@pytest.mark.parametrize(
+    ("instruction", "expected"),
+    [
+        ("Tilt up 3 x 2.5 degrees in one move", "adjust_ptz(tilt_deg=7.5)"),
+        ("Pan right 12 degrees twice in a single move", "adjust_ptz(pan_deg=24)"),
+        ("Pan left twice 10 degrees as a single command", "adjust_ptz(pan_deg=-20)"),
+        ("Pan right 8 and tilt up 3, carried out as a single movement", "adjust_ptz(pan_deg=8, tilt_deg=3)"),
+        ("Pan right 12 degrees twice", "adjust_ptz(pan_deg=12); adjust_ptz(pan_deg=12)"),
+    ],
+)
+def test_repetitions_in_one_move_are_added(instruction: str, expected: str) -> None:
+    assert calls(instruction) == expected
+
+
+def test_steps_in_one_move_are_asked_about() -> None:
+    assert not plan("Pan left 60 degrees in 3 steps in one move", PRESETS).understood
+
+
+@pytest.mark.parametrize(
+    ("instruction", "expected"),
+    [
+        ("Pan right two thirds of a degree", "adjust_ptz(pan_deg=0.666667)"),
+        ("Tilt up three quarters of a degree", "adjust_ptz(tilt_deg=0.75)"),
+        ("Pan left three eighths of a full circle", "adjust_ptz(pan_deg=-135)"),
+        ("Perform a rotation to the right of one sixth of a circle", "adjust_ptz(pan_deg=60)"),
+        ("Reduce the zoom to one quarter of its present value", "adjust_ptz(zoom_factor=0.25)"),
+    ],
+)
+def test_counted_fractions(instruction: str, expected: str) -> None:
+    assert calls(instruction) == expected
+
+
+@pytest.mark.parametrize(
+    ("instruction", "expected"),
+    [
+        ("Relative tilt: -4 degrees", "adjust_ptz(tilt_deg=-4)"),
+        ("Minor correction: 0.25 deg right", "adjust_ptz(pan_deg=0.25)"),
+        ("Run the tilt axis to its upper limit", "adjust_ptz(tilt_deg=90)"),
+        ("Zoom out 20 percent to reproduce the earlier framing", "adjust_ptz(zoom_percent=-20)"),
+        ("Pan left 20 to clear the pillar", "adjust_ptz(pan_deg=-20)"),
+        ("Look all the way up at the sky", "adjust_ptz(tilt_deg=90)"),
+        ("Point it straight down at the tarmac", "adjust_ptz(tilt_deg=-90)"),
+        ("If it's no bother, a quarter turn to the left", "adjust_ptz(pan_deg=-90)"),
+        ("Pan left 15, only the hedge I can see here", "adjust_ptz(pan_deg=-15)"),
+        ("Pan all the way left, end switch test", "adjust_ptz(pan_deg=-360)"),
+        ("Halve the current magnification", "adjust_ptz(zoom_factor=0.5)"),
+        ("Make everything half the size", "adjust_ptz(zoom_factor=0.5)"),
+        ("Could you zoom in so it's three times as close?", "adjust_ptz(zoom_factor=3)"),
+        ("As wide as the zoom will go please, all the way out", "adjust_ptz(zoom_limit=out)"),
+        ("Home the camera, then pan left 10", "go_home(); adjust_ptz(pan_deg=-10)"),
+        ("Go home please, my break's almost over", "go_home()"),
+        ("I don't know what I've done. Put it back to its home position.", "go_home()"),
+        ("Could you find the bench... actually no, never mind that, just go home", "go_home()"),
+    ],
+)
+def test_moves(instruction: str, expected: str) -> None:
+    assert calls(instruction) == expected
+
+
+@pytest.mark.parametrize("instruction", ["Pan left 20 to reach 40 degrees", "Look all the way down at the bin"])
+def test_other_goals_of_a_move_are_asked_about(instruction: str) -> None:
+    assert not plan(instruction, PRESETS).understood
+
+
+@pytest.mark.parametrize(
+    ("instruction", "factor"),
+    [
+        ("make everything twice as big", 2),
+        ("make it twice the size", 2),
+        ("make it half the size", 0.5),
+        ("set the zoom to 1.5x", 0.75),
+    ],
+)
+def test_multiples_of_the_size_are_relative_to_the_current_zoom(instruction: str, factor: float) -> None:
+    stage = Stage(pose=Pose(zoom=2.0))
+    stage.run(instruction)
+    assert stage.calls == [("adjust_ptz", {"zoom_factor": factor})]
+
+
+@pytest.mark.parametrize(
+    ("instruction", "description", "duration_s"),
+    [
+        ("could you stay on the grey van for 40 seconds while it backs in?", "grey van", 40),
+        ("keep following the nurse while she walks past, about two minutes should do it", "nurse", 120),
+        ("Start tracking the barge, duration 30 s.", "barge", 30),
+        ("Begin following the jogger and carry on for a minute and a half", "jogger", 90),
+        ("Follow the digger for 20 s, checking tilt smoothness", "digger", 20),
+        ("Track the coach for 25 s so I can time its left turn", "coach", 25),
+    ],
+)
+def test_how_long_to_follow(instruction: str, description: str, duration_s: int) -> None:
+    assert calls(instruction) == f"track_object(description={description}, duration_s={duration_s})"
