@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from scope_ptz.planner.grammar.parsing.remark_detection.features import features_of
-from scope_ptz.planner.grammar.parsing.remark_detection.model import RemarkModel, remark_model
+from scope_ptz.planner.grammar.parsing.remark_detection.model import LinearModel, remark_model
 from scope_ptz.planner.grammar.parsing.remark_detection.segments import segments_of
 from scope_ptz.planner.grammar.parsing.remark_detection.versions import versions_without_remarks
 from scope_ptz.planner.plan import plan
@@ -50,7 +50,7 @@ def test_the_words_of_presets_are_no_features() -> None:
 
 
 def test_log_odds_add_up() -> None:
-    assert RemarkModel(-1.0, {"a": 2.5, "b": -0.5}).log_odds({"a", "b", "unknown"}) == 1.0
+    assert LinearModel(-1.0, {"a": 2.5, "b": -0.5}).log_odds({"a", "b", "unknown"}) == 1.0
 
 
 @pytest.mark.parametrize(

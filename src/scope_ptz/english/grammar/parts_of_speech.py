@@ -20,6 +20,14 @@ def parts_of_speech(word: str) -> frozenset[str]:
 
 
 @lru_cache(maxsize=8192)
+def lemmas_of(word: str) -> frozenset[str]:
+    """Return the base forms that a lower-case word can have ("left": "left", "leave"); the word itself if it is unknown."""
+    from lemminflect import getAllLemmas
+
+    return frozenset(lemma for lemmas in getAllLemmas(word).values() for lemma in lemmas) or frozenset({word})
+
+
+@lru_cache(maxsize=8192)
 def verb_form(word: str) -> VerbForm | None:
     """Return the form of a lower-case verb; None for other words.
 

@@ -32,10 +32,12 @@ from scope_ptz.planner.grammar.consistency.check import (
     objection_to_loss,
     objection_to_wording,
 )
+from scope_ptz.planner.grammar.consistency.evidence import evidence_of
 from scope_ptz.planner.grammar.lexing.lexer import lexemes_of
 from scope_ptz.planner.grammar.parsing.instruction_parser import MAX_CHARS, Parsed, parse
 from scope_ptz.planner.grammar.parsing.remark_detection.shorter_versions import MAX_SHORTENED_CHARS, shorter_versions
 from scope_ptz.planner.grammar.parsing.remark_detection.versions import versions_without_remarks
+from scope_ptz.planner.grammar.parsing.remark_detection.withdrawing_segments import withdrawing_segments
 from scope_ptz.planner.grammar.parsing.rewording.plain_text import written_out
 from scope_ptz.planner.grammar.parsing.rewording.withdrawn_parts import takes_back_unclearly
 
@@ -101,13 +103,30 @@ def understand(instruction: str, presets: Sequence[str] | None, conversation: Se
     if not conversation and lacks_noun(said):
         return Understanding(clarification="How many of what? Please name the things to count.")
     understanding = _read(said, preset_names, conversation)
-    if understanding.steps:
-        return Understanding((ast.Instead(understanding.steps),)) if continuation.corrects else understanding
-    if question := question_about_rejection(instruction):
-        return Understanding(clarification=question)
-    if continuation.corrects:
+    if understanding.steps and continuation.corrects:
+        return Understanding((ast.Instead(understanding.steps),))
+    if not understanding.steps:
+        if question := question_about_rejection(instruction):
+            return Understanding(clarification=question)
+        if continuation.corrects:
+            return understanding
+        understanding = _read_without_remarks(said, understanding, preset_names, conversation)
+    return _unless_taken_back(said, understanding, preset_names, conversation)
+
+
+def _unless_taken_back(
+    said: str, understanding: Understanding, preset_names: tuple[str, ...] | None, conversation: Sequence[PastTurn]
+) -> Understanding:
+    """Return an understanding, or a question if it moves the camera and something that the plan ignores probably takes this back."""
+    if not evidence_of(understanding.steps).moves:
         return understanding
-    return _read_without_remarks(said, understanding, preset_names, conversation)
+    for statement, rest in withdrawing_segments(written_out(said), preset_names or ()):
+        other = _read(rest, preset_names, conversation)
+        if not other.steps:
+            other = _read_without_remarks(rest, other, preset_names, conversation)
+        if other.steps == understanding.steps:
+            return Understanding(clarification=f'You said "{statement}", so I did nothing. Please say only what I should do.')
+    return understanding
 
 
 def _read_without_remarks(

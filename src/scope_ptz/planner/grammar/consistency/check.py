@@ -23,7 +23,6 @@ from scope_ptz.planner.grammar.consistency.withdrawals import withdrawing_statem
 from scope_ptz.planner.grammar.consistency.words import REPAIRING, Word, words_of
 from scope_ptz.planner.grammar.lexing.preset_names import preset_key
 
-_MOVES = (ast.Move, ast.Home, ast.GoToPreset, ast.GoThere, ast.ZoomTo, ast.Track, ast.Back, ast.WhichPreset, ast.FirstWith)
 _LEAVING_OUT = re.compile(
     r"(?:\b(?:but|and) not|(?<!\ba )(?<!\bthe )(?<!\bany )(?<!\bno )\bskip|\bleave out|\bmiss out|\bnot"
     r"|\bbut don t (?:stop|go)|\bexcept)(?: at| to| do| in)?(?: the)?$"
@@ -56,7 +55,7 @@ def objection(instruction: str, steps: Sequence[ast.Step], presets: Sequence[str
     found = (swallowed_command(text, is_thing=is_thing) for text, is_thing in evidence.texts.items())
     if swallowed := next(filter(None, found), None):
         return not_understood([swallowed])
-    if evidence.forbids_moving and evidence.has(*_MOVES):
+    if evidence.forbids_moving and evidence.moves:
         return _MOVE_OR_STAY
     words = words_of(instruction)
     _mark_described(words, evidence)
@@ -118,7 +117,7 @@ def objection_to_forbidden(instruction: str, steps: Sequence[ast.Step]) -> str |
         steps: The steps with all names resolved.
     """
     evidence = evidence_of(steps)
-    if _STAY.search(instruction) and evidence.has(*_MOVES):
+    if _STAY.search(instruction) and evidence.moves:
         return _MOVE_OR_STAY
     words = words_of(instruction)
     _mark_described(words, evidence)

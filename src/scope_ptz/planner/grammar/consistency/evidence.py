@@ -9,6 +9,7 @@ from typing import Any
 from scope_ptz.planner.grammar import instruction_tree as ast
 
 _DIRECTIONS = {("pan", -1): "left", ("pan", 1): "right", ("tilt", 1): "up", ("tilt", -1): "down"}
+_MOVES = (ast.Move, ast.Home, ast.GoToPreset, ast.GoThere, ast.ZoomTo, ast.Track, ast.Back, ast.WhichPreset, ast.FirstWith)
 _TEXTS = {ast.Thing: ("text",), ast.Ask: ("question",), ast.Statement: ("predicate", "question")}
 
 
@@ -41,6 +42,11 @@ class Evidence:
     def has(self, *kinds: type[Any]) -> bool:
         """Return whether the plan has a step of one of the types."""
         return bool(self.steps & set(kinds))
+
+    @property
+    def moves(self) -> bool:
+        """Whether a step of the plan moves the camera."""
+        return self.has(*_MOVES)
 
 
 def evidence_of(steps: Sequence[ast.Step]) -> Evidence:

@@ -1,4 +1,4 @@
-"""The linear model: the log-odds that a segment is a remark."""
+"""Two linear models of a segment: whether it is a remark, and whether it takes a command back."""
 
 from __future__ import annotations
 
@@ -8,11 +8,12 @@ from dataclasses import dataclass
 from functools import lru_cache
 from importlib.resources import files
 
-WEIGHTS_FILE = "weights.json"
+REMARK_WEIGHTS_FILE = "remark_weights.json"
+WITHDRAWAL_WEIGHTS_FILE = "withdrawal_weights.json"
 
 
 @dataclass(frozen=True, slots=True)
-class RemarkModel:
+class LinearModel:
     """Weights of a logistic regression.
 
     Attributes:
@@ -24,12 +25,22 @@ class RemarkModel:
     weights: Mapping[str, float]
 
     def log_odds(self, features: Iterable[str]) -> float:
-        """Return the log-odds that a segment with these features is a remark; 0 means that both are equally likely."""
+        """Return the log-odds that a segment with these features is what the model looks for; 0 means that both are equally likely."""
         return self.bias + sum(self.weights.get(feature, 0.0) for feature in features)
 
 
 @lru_cache(maxsize=1)
-def remark_model() -> RemarkModel:
-    """Return the model that is delivered with the package."""
-    content = json.loads(files(__package__).joinpath(WEIGHTS_FILE).read_text(encoding="utf-8"))
-    return RemarkModel(content["bias"], content["weights"])
+def remark_model() -> LinearModel:
+    """Return the model that tells remarks from requests, for ``features_of``."""
+    return _model(REMARK_WEIGHTS_FILE)
+
+
+@lru_cache(maxsize=1)
+def withdrawal_model() -> LinearModel:
+    """Return the model that tells statements that take a command back from harmless remarks, for ``statement_features_of``."""
+    return _model(WITHDRAWAL_WEIGHTS_FILE)
+
+
+def _model(name: str) -> LinearModel:
+    content = json.loads(files(__package__).joinpath(name).read_text(encoding="utf-8"))
+    return LinearModel(content["bias"], content["weights"])
