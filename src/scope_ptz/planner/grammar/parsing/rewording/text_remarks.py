@@ -183,6 +183,11 @@ REMARKS = (
         "",
     ),
     (r",? (?:or )?till i get (?:out )?there\b", ""),
+    (
+        r", (?:i )?(?:always|keep|forever) (?:mix(?:ing)?|confus(?:e|ing)|get(?:ting)?|muddl(?:e|ing)) (?:up )?"
+        r"(?:them|those|these|the two|those two)(?: up| wrong| the wrong way round| mixed up| confused)?\W*$",
+        "",
+    ),
     (r", (?:otherwise|if not,?) leave it as it is\W*$", ""),
     (r", can hear \w+(?: \w+)*\W*$", ""),
     (r"\bthe sky is taking up half of the picture\b", "it is too high"),
