@@ -23,7 +23,7 @@ _STOPPING = f"(HALT|pause|freeze|{_NOTHING}) (it|right)*"
 
 _AMOUNT = (
     f"(NUM {_UNIT}?)? (less|more|fewer)|NUM {_UNIT}? (ATMOST|maximum|max|tops|ORFEWER)|ATMOST NUM {_UNIT}?|"
-    "(CARRY|TAKE|it|that)* ((?!twice|thrice) (DOUBLE|TRIPLE|QUADRUPLE|HALVE)|half) (of)? (it|that)?|"
+    "(CARRY|TAKE|it|that)* ((?!twice|thrice) (DOUBLE|TRIPLE|QUADRUPLE|HALVE)) (it|that)?|half (of)? (it|that)|"
     "(it|that|this) (BE|'s) (not_enough|not enough|insufficient|too much|too little)|not_enough"
 )
 """An amount that changes the one that was said."""
