@@ -32,6 +32,12 @@ def described(call: PlannedCall) -> str:
             "go_to_preset(name=gate); go_to_preset(name=yard)",
         ),
         ("Take a picture of the dock. Scratch that, just show me the dock.", "go_to_preset(name=dock)"),
+        ("Tilt up 15, then zoom in 2x. Correction: drop the zoom, tilt only.", "adjust_ptz(tilt_deg=15)"),
+        ("Go to the yard and take three pictures, no, cancel the pictures, just go there.", "go_to_preset(name=yard)"),
+        ("pan left 20 and take a photo, actually forget the photo, the union doesn't like that", "adjust_ptz(pan_deg=-20)"),
+        ("Pan left 20. No one may touch the zoom.", "adjust_ptz(pan_deg=-20)"),
+        ("Go to the yard. Don't zoom in, leave it wide.", "go_to_preset(name=yard)"),
+        ("tilt up 10, sorry, I mean down 10, always confuse those", "adjust_ptz(tilt_deg=-10)"),
     ],
 )
 def test_a_part_that_is_taken_back_is_left_out(instruction: str, expected: str) -> None:
@@ -53,6 +59,8 @@ def test_a_part_that_is_taken_back_is_left_out(instruction: str, expected: str) 
         "pan left 20, twice, no forget the pan, tilt up 5",
         "turn left 20, look up 10 and again, no, don't tilt",
         "pan left 20, tilt up 5, undo, forget the tilt",
+        "Pan left 20, then zoom in 3x. Correction: cancel the zoom, tilt only.",
+        "Go to the gate and pan left 10 and take two pictures, no, cancel the pictures, only go there.",
     ],
 )
 def test_unclear_words_that_take_something_back_are_asked_about(instruction: str) -> None:

@@ -97,7 +97,7 @@ def understand(instruction: str, presets: Sequence[str] | None, conversation: Se
     if _NO.fullmatch(instruction.strip()):
         return Understanding(clarification=NOTHING_DONE)
     continuation = continuation_of(instruction, conversation, preset_names or ())
-    if (question := continuation.question or objection_to_wording(written_out(instruction))) is not None:
+    if (question := continuation.question or objection_to_wording(written_out(instruction), preset_names or ())) is not None:
         return Understanding(clarification=question)
     said = continuation.text
     if not conversation and lacks_noun(said):

@@ -16,12 +16,14 @@ from scope_ptz.planner.grammar import instruction_tree as ast
 from scope_ptz.planner.grammar.consistency.acts import forbidden_actions, ignored_conditions, omitted_actions
 from scope_ptz.planner.grammar.consistency.directions import contradicted_zoom, ignored_directions, unnamed_directions
 from scope_ptz.planner.grammar.consistency.evidence import Evidence, evidence_of
+from scope_ptz.planner.grammar.consistency.last_words import unclear_last_words
 from scope_ptz.planner.grammar.consistency.numbers import is_amount, unused_numbers
 from scope_ptz.planner.grammar.consistency.slots import swallowed_command
 from scope_ptz.planner.grammar.consistency.unsafe_wordings import unsafe_wording
 from scope_ptz.planner.grammar.consistency.withdrawals import withdrawing_statement
 from scope_ptz.planner.grammar.consistency.words import REPAIRING, Word, words_of
 from scope_ptz.planner.grammar.lexing.preset_names import preset_key
+from scope_ptz.planner.grammar.parsing.rewording.named_corrections import unresolved_correction, with_corrections_in_form
 
 _LEAVING_OUT = re.compile(
     r"(?:\b(?:but|and) not|(?<!\ba )(?<!\bthe )(?<!\bany )(?<!\bno )\bskip|\bleave out|\bmiss out|\bnot"
@@ -125,13 +127,16 @@ def objection_to_forbidden(instruction: str, steps: Sequence[ast.Step]) -> str |
     return not_understood(_phrases(instruction, words, [found[start] for start in sorted(found)])) if found else None
 
 
-def objection_to_wording(instruction: str) -> str | None:
+def objection_to_wording(instruction: str, presets: tuple[str, ...] = ()) -> str | None:
     """Return the question to ask if a statement takes back, forbids or changes what is asked for, or may be misread; else None.
 
     Args:
         instruction: The user's text, with abbreviations written out.
+        presets: The camera's presets.
     """
-    if (words := withdrawing_statement(instruction)) is not None:
+    meant = with_corrections_in_form(instruction, presets)
+    words = withdrawing_statement(instruction) or unresolved_correction(instruction, presets) or unclear_last_words(meant, presets)
+    if words is not None:
         return f'You said "{words}", so I did nothing. Please say only what I should do.'
     return None if (words := unsafe_wording(instruction)) is None else not_understood([words])
 

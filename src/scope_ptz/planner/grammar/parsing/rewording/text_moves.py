@@ -145,7 +145,7 @@ MOVES = (
     (r"\b(two|three|four|five|\d) time (?=bigger|closer|larger|wider|smaller)", r"\1 times "),
     (r"\bgo to whichever(?: one)?(?: it is| that is| has (?:it|more|the most)| wins?)?(?=\W*$|,)", "go there"),
     (
-        r"(?<!left)(?<!right)(?<!up)(?<!down)(?<!in)(?<!out)(?<!wide)(?<!far)(?<!close),? as (?:he|she|it|they) (?:goes?"
+        r"(?<!left)(?<!right)(?<!up)(?<!down)(?<!in)(?<!out)(?<!wide)(?<!far)(?<!close)(?<!soon),? as (?:he|she|it|they) (?:goes?"
         r"|moves?|walks?|drives?|comes?)(?: along| past| by| around| through)?(?=[,.]|$)",
         "",
     ),

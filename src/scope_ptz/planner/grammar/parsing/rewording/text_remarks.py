@@ -211,6 +211,11 @@ REMARKS = (
         "",
     ),
     (r",? (?:or )?till i get (?:out )?there\b", ""),
+    (
+        r", (?:i )?(?:always|keep|forever) (?:mix(?:ing)?|confus(?:e|ing)|get(?:ting)?|muddl(?:e|ing)) (?:up )?"
+        r"(?:them|those|these|the two|those two)(?: up| wrong| the wrong way round| mixed up| confused)?\W*$",
+        "",
+    ),
     (r", (?:otherwise|if not,?) leave it as it is\W*$", ""),
     (
         r"\b((?:photo|picture|pic|shot|snap|still|image)s?\b.*|another(?: one)?\b.*)[,;.] (?:the |my |our )?[\w' ]{2,30}? "

@@ -32,6 +32,8 @@ WITHDRAWALS = (
     (r"\bon no account (?=\w)", "do not "),
     (r"\b(do not|don['’]?t) (?:on any account|under any circumstances|for any reason) ", r"\1 "),
     (r"\b(?:do not|don['’]?t) move anything\b", "don't move"),
+    (r"\b(?:nobody|no one) (?:is to|may|must|should) (?=(?:touch|change|alter|use) (?:the )?(?:zoom|pan|tilt)\b)", "do not "),
+    (r"\b((?:do not|don['’]?t) zoom)(?: in)?,? (?:and |but |just )?leave (?:it|the (?:view|shot|picture)) wide\b", r"\1"),
     (
         r"[.;,] the (photograph|photo|picture|pan|tilt|zoom|count) (?:is|are) (?:not|no longer) (?:necessary|needed"
         r"|required)(?: after all| any more)?\W*$",

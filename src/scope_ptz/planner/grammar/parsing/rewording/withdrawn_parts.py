@@ -12,14 +12,14 @@ from dataclasses import dataclass
 
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme, lexemes_of
 from scope_ptz.planner.grammar.parsing.parts.clause import MARKERS
-from scope_ptz.planner.grammar.parsing.parts.patterns import Match, match_start, search
+from scope_ptz.planner.grammar.parsing.parts.patterns import Match, full_match, match_start, search
 from scope_ptz.planner.grammar.parsing.rewording.repairs import Repaired, without_text
 
 _ENDS = "COMMA|STOP|DASH|COLON|QUESTION"
 _SEPARATORS = ("COMMA", "STOP", "DASH", "COLON", "AND", "THEN", "BUT")
 _SIGNAL = (
     "no|nah|nope|wait|sorry|actually|hang_on|hold_on|hang on|hold on|(scratch|scrap|strike) that|on (second|ORDINAL) "
-    "(thought|thoughts)|changed my mind"
+    "(thought|thoughts)|changed my mind|correction COLON?"
 )
 _PAUSES = "((?!actually|sorry|wait) FILLER|COMMA|DASH|STOP|BUT|SELF)*"
 _ALONE = "alone|as it is|as_it_is|as is|where it is|the way it is|be"
@@ -38,6 +38,13 @@ _TAKING_BACK = tuple(
 )
 _FURTHER = rf"({_ENDS}|AND|OR|FILLER)+ (DET ({_ACTS})|({_ACTS}) (too|either|FILLER|ADVERB)* (({_ENDS})|\Z))"
 """Another action that is taken back along with the first one: "forget the tilt and the pan"."""
+
+_KEPT = "((?P<there>(CARRY|go|goto) there)|(DOACT)? (DET)? (?P<act>PAN|TILT|ZOOM|COUNT|PICTURE))"
+_REASON = (
+    f"({_ENDS}) (because|as|since|FILLER)* (NOONE|(DET|FREE|SELF|SOMEONE){{1,4}} ((DOV|do|MODAL) not|never)) "
+    f"(want|wants|WRAPPER|like|likes|allow|allows|need|needs) (it|that|this|them|any|PRON) (FILLER)* ({_ENDS})*"
+)
+"""Words that say why a part is taken back: "forget the photo, the boss doesn't want that"."""
 
 _DEPENDENT = (
     "(FILLER|do|DOV|DOACT|CARRY|PRON|DET|in)* (AGAINWORD|SAMEAMOUNT|TWICE|THRICE|NUM X|REPEAT|UNDO|BACK|go_back|return|redo|"
@@ -70,6 +77,8 @@ def without_withdrawn_parts(said: Repaired) -> tuple[Repaired, Sequence[Lexeme]]
         if not fitting:
             continue
         kept = _without(before, fitting[0], is_act=_kind(match) != "") if len(fitting) == 1 else None
+        if kept is not None and _is_named_or_reason(kept, after):
+            after = ()
         is_only = match_start(f"({_ENDS}|FILLER)* (just|only)", after) is not None
         is_said_later = match.has("signal") or match.has("firm")
         is_clear = is_said_later and not (kept and is_only) and (kept or after) and not search("|".join(MARKERS), before)
@@ -78,6 +87,25 @@ def without_withdrawn_parts(said: Repaired) -> tuple[Repaired, Sequence[Lexeme]]
             return said, said.lexemes[i + 1 : i + match.size]
         return without_text(said, _joined(kept, after)), ()
     return said, ()
+
+
+def _is_named_or_reason(kept: tuple[Lexeme, ...], after: Sequence[Lexeme]) -> bool:
+    """Return whether the words after those that take a part back only name the part that remains, or say why.
+
+    Examples are "cancel the zoom, pan only", "forget the photos, only go there" and "forget the photo, Dave doesn't want that".
+    """
+    if full_match(_REASON, after):
+        return True
+    only = full_match(f"({_ENDS}|FILLER)* ((just|only) {_KEPT}|{_KEPT} (only|alone)) ({_ENDS}|FILLER)*", after)
+    parts = _parts(kept)
+    if only is None or len(parts) != 1:
+        return False
+    if only.has("there"):
+        return any(x.has("PRESET") for x in parts[0].lexemes)
+    act = next(name for name in _KINDS if any(x.has(name) for x in only["act"]))
+    return any(x.has(act, *_TURNS.get(act, ())) for x in parts[0].lexemes) and not (
+        act in _TURNS and any(x.has("ZOOM") for x in parts[0].lexemes)
+    )
 
 
 def _needs_what_is_dropped(lexemes: Sequence[Lexeme], dropped: _Part, first: int, last: int) -> bool:
