@@ -4,9 +4,9 @@
 
 Harmless are the segments of the lots' rows without which the plan stays the same, and the statements of the commands that must be
 carried out. Four models are trained, each on three quarters of the files, and measured on the rest: for thresholds at which few
-instructions of the lots would be asked about, the table shows how many statements are recognised. Only rows of the split ``dev`` are
-used. With ``--write`` a model that is trained on all files replaces the one in the package; then the planner as it is delivered
-is measured on the rows that are kept aside.
+instructions of the lots would be asked about, the table shows how many statements are recognised. Only rows of the split ``dev``
+are used. With ``--write`` a model that is trained on all files replaces the one in the package; then the planner as it is
+delivered is measured on the rows that are kept aside.
 """
 
 from __future__ import annotations

@@ -117,7 +117,7 @@ def understand(instruction: str, presets: Sequence[str] | None, conversation: Se
 def _unless_taken_back(
     said: str, understanding: Understanding, preset_names: tuple[str, ...] | None, conversation: Sequence[PastTurn]
 ) -> Understanding:
-    """Return an understanding, or a question if it moves the camera and something that the plan ignores probably takes this back."""
+    """Return an understanding, or a question if it moves the camera although a statement probably takes the command back."""
     if not evidence_of(understanding.steps).moves:
         return understanding
     for statement, rest in withdrawing_segments(written_out(said), preset_names or ()):

@@ -25,7 +25,7 @@ class LinearModel:
     weights: Mapping[str, float]
 
     def log_odds(self, features: Iterable[str]) -> float:
-        """Return the log-odds that a segment with these features is what the model looks for; 0 means that both are equally likely."""
+        """Return the log-odds that a segment with these features is what the model looks for; 0 means even odds."""
         return self.bias + sum(self.weights.get(feature, 0.0) for feature in features)
 
 
