@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import pytest
-from tests.planner.withdrawals import PRESETS, rows
 
 from scope_ptz.planner.grammar.parsing.remark_detection.withdrawing_segments import withdrawing_segments
 from scope_ptz.planner.plan import plan
+from tests.planner.withdrawals import PRESETS, rows
 
 MIN_CARRIED_OUT = 0.65
 MAX_MOVED_IN_SPITE = 0.33
