@@ -25,8 +25,7 @@ def test_statements_that_nobody_has_seen_are_told_apart() -> None:
 @pytest.mark.parametrize(
     ("harmless", "binding"),
     [
-        ("the manager approved it this morning", "the manager has not approved it yet"),
-        ("no joke, there is a swan", "only joking"),
+        ("I am sure about the swan", "I was only joking"),
         ("I asked my wife about it", "I must ask my wife about it first"),
         ("we paint the lines tomorrow", "we will do that tomorrow"),
     ],
