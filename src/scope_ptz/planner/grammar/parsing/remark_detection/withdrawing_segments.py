@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 
 from scope_ptz.planner.grammar.parsing.remark_detection.features import statement_features_of
@@ -11,6 +12,27 @@ from scope_ptz.planner.grammar.parsing.remark_detection.shorter_versions import 
 
 _MIN_LOG_ODDS = 0.3
 """At this value, one in a hundred harmless instructions is asked about (``python -m benchmarks.withdrawal_model``)."""
+
+_ABOUT_MESSAGE = re.compile(
+    r"(?:so |because |as |since )?(?:i['’]?m|i am) (?:typing|texting|dictating|messaging)\b.*", re.IGNORECASE
+)
+"""A remark about how the message is written, which takes nothing back: "I'm typing this in the rain"."""
+
+_CONJUNCTIONS = frozenset({"and", "as", "because", "but", "since", "so", "while", "whilst"})
+"""Words that say nothing without the clause after them."""
+
+_PROHIBITION = re.compile(
+    r"(?:^|[,.;]|\bbut|\band) *(?:please |but |and )*(?:no|never|do not|don['’]?t) (?:[\w'’]+ ){0,4}[\w'’]+[ ,.;]*$", re.IGNORECASE
+)
+"""A clause at the end of a text that says what not to do: "but no photos", unlike "the man with no hat"."""
+
+_DISLIKE = re.compile(
+    r"(?:as |because |since )?(?:the |my |our )?\w+ (?:really )?"
+    r"(?:hates?|dislikes?|can['’]?t stand|doesn['’]?t like|does not like) "
+    r"(?:that|it|them|those)",
+    re.IGNORECASE,
+)
+"""Why something is forbidden. After another command, it may be a reason against the command."""
 
 _MAX_SEGMENTS = 3  # segments of one instruction that are yielded: for each of them the caller plans once more
 
@@ -31,5 +53,8 @@ def withdrawing_segments(text: str, presets: tuple[str, ...]) -> Iterator[tuple[
     likeliest = sorted((index for index, value in enumerate(log_odds) if value > _MIN_LOG_ODDS), key=lambda index: -log_odds[index])
     for index in likeliest[:_MAX_SEGMENTS]:
         segment = segments[index]
+        is_reason = _DISLIKE.fullmatch(segment.text) and _PROHIBITION.search(text[: segment.start])
+        if is_reason or segment.text.lower() in _CONJUNCTIONS or _ABOUT_MESSAGE.fullmatch(segment.text):
+            continue
         following = segments[index + 1].start if index + 1 < len(segments) else len(text)
         yield segment.text, (text[: segment.start] + text[following:]).strip(" ,;:-–—")
