@@ -80,8 +80,8 @@ def versions_without_remarks(text: str, presets: tuple[str, ...]) -> Iterator[st
 def _is_binding(text: str, presets: tuple[str, ...]) -> bool:
     """Return whether a segment begins with a command, or may restrict, forbid, repeat or take back something."""
     first = next((lexeme for lexeme in lexemes_of(text, presets) if not lexeme.has("FILLER", "AND", "BUT")), None)
-    if first is not None and first.has(*VERBS, "TELL", "HOWMANY"):
-        return True
+    if first is not None and (first.has(*VERBS, "TELL", "HOWMANY") or first.word == "of"):
+        return True  # "one picture, only one, of the van"
     if _TAKING_BACK.search(text) is not None:
         return True
     if (negated := _NEGATED_STATEMENT.match(text)) is not None:

@@ -56,6 +56,11 @@ WORDS = {
 SPELLING = (
     (r"(?<=\w)\s*(?:\.{2,}|…)(?=\s+\w)", ","),
     (r"\ball way\b", "all the way"),
+    (r"(?<!yes),? or (?:no|nah|nope|naw)(?=\W*$)", " or not"),
+    (r"\blook(at|for)\b", r"look \1"),
+    (r"\bzoom(in|out|on)\b", r"zoom \1"),
+    (r"\b(pan|tilt|turn|go)(left|right|up|down)\b", r"\1 \2"),
+    (r"\b(count|find|follow|track|show)(the|me)\b(?= )", r"\1 \2"),
     (r"\btheres\b", "there's"),
     (
         r"\b(check|see|tell me|know|confirm|verify|sure|find out|wondering) weather (?=the|there|any|it|he|she|they|my|our)",

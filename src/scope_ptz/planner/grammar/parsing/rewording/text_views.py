@@ -72,7 +72,7 @@ VIEWS = (
     (r"^tight (?:in )?on ", "zoom in on "),
     (
         r"^where(?:['’]?s| is) ((?:the|that|my|our) [^?.!,;]+?)(?: got to| gone)?[?,]\s*(?:zoom (?:in )?(?:on|to)"
-        r"|find|show me) (?:it|him|her|them)(?: for (?:me|us)| and show (?:me|us))?\s*[.!]*$",
+        r"|find|show me) (?:it|him|her|them)(?: for (?:me|us)| and show (?:me|us)| please| quickly| now)*(?=\s*[.!]*$|[,.;] )",
         r"zoom in on \1",
     ),
     (r"^keep an eye on (.+?),? and follow (?:it|him|her|them)(?: for (?=.+$)|$)", r"follow \1 for "),
@@ -200,6 +200,10 @@ VIEWS = (
     ),
     (r"\bi would appreciate a closer look at ", "zoom in on "),
     (r"\bget (?:me )?((?:the|that) [\w ]+?) in close\b", r"zoom in on \1"),
+    (
+        r"\b(?:bring|get|pull) (it|him|her|them) (?:up |in |right |nice and |really |very )*close(?: up)?(?=\W*$|[,.;]| then\b)",
+        r"zoom in on \1",
+    ),
     (r"^i want to see ((?:the|that) [\w'’ ]+?), bring it up close\W*$", r"zoom in on \1"),
     (r"\bmake ((?:the|that) [\w ]+?) fill the (?:picture|frame|view|screen)\b", r"zoom in on \1"),
     (r"^(?:i )?can['’]?t see (?:the )?([\w ]+?) anywhere, (find|locate) it(?: for me)?\W*$", r"find the \1"),

@@ -11,6 +11,7 @@ from scope_ptz.planner.grammar.parsing.parts.clause import DIRECTIONS, MOTION_VE
 from scope_ptz.planner.grammar.parsing.parts.courtesy import is_polite
 from scope_ptz.planner.grammar.parsing.parts.noun_phrases import is_noun_phrase
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start, search
+from scope_ptz.planner.grammar.parsing.parts.scopes import scope_of
 from scope_ptz.planner.grammar.parsing.segments.clause_boundaries import ClauseBoundaryDetector
 from scope_ptz.planner.grammar.parsing.segments.clause_starts import (
     ENDS,
@@ -281,7 +282,7 @@ class _Splitter(ClauseBoundaryDetector):
 
     def _is_label(self, i: int) -> bool:
         """Return whether the words before the colon at a position name what follows it: "preset: yard", "tilt: -5"."""
-        if 0 < len(self.words) < 3 and self.words[-1].has("PRESETNOUN", "CAMERA"):
+        if 0 < len(self.words) < 3 and self.words[-1].has("PRESETNOUN", "CAMERA") and scope_of(self.words) is None:
             return True
         if full_match("(close_up|COUNT|READ|TRACK|FIND|headcount|presence check|COUNTNOUN|LISTING)", self.words):
             return True  # "close-up: padlock"
