@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 from scope_ptz.planner.grammar.parsing.remark_detection.features import statement_features_of
 from scope_ptz.planner.grammar.parsing.remark_detection.model import withdrawal_model
@@ -15,8 +16,23 @@ _MIN_LOG_ODDS = 0.3
 _MAX_SEGMENTS = 3  # segments of one instruction that are yielded: for each of them the caller plans once more
 
 
-def withdrawing_segments(text: str, presets: tuple[str, ...]) -> Iterator[tuple[str, str]]:
-    """Yield each segment that probably takes a command back, and the text without it; the likeliest first.
+@dataclass(frozen=True, slots=True)
+class WithdrawingSegment:
+    """A segment that probably takes a command back.
+
+    Attributes:
+        text: Its words.
+        rest: The instruction without it.
+        before: If other segments follow it, the beginnings of the instruction before it, each a segment shorter than the previous.
+    """
+
+    text: str
+    rest: str
+    before: tuple[str, ...]
+
+
+def withdrawing_segments(text: str, presets: tuple[str, ...]) -> Iterator[WithdrawingSegment]:
+    """Yield each segment that probably takes a command back; the likeliest first.
 
     A segment that the plan depends on ("no, 30") is none: the caller compares the plans of both texts.
 
@@ -30,6 +46,7 @@ def withdrawing_segments(text: str, presets: tuple[str, ...]) -> Iterator[tuple[
     log_odds = [withdrawal_model().log_odds(statement_features_of(segments, index, presets)) for index in range(len(segments))]
     likeliest = sorted((index for index, value in enumerate(log_odds) if value > _MIN_LOG_ODDS), key=lambda index: -log_odds[index])
     for index in likeliest[:_MAX_SEGMENTS]:
-        segment = segments[index]
-        following = segments[index + 1].start if index + 1 < len(segments) else len(text)
-        yield segment.text, (text[: segment.start] + text[following:]).strip(" ,;:-–—")
+        segment, is_last = segments[index], index + 1 == len(segments)
+        following = len(text) if is_last else segments[index + 1].start
+        before = () if is_last else tuple(text[: earlier.end] for earlier in reversed(segments[:index]))
+        yield WithdrawingSegment(segment.text, (text[: segment.start] + text[following:]).strip(" ,;:-–—"), before)
