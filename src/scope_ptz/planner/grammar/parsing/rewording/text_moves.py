@@ -40,7 +40,7 @@ MOVES = (
     (r"\bbring (the|that|this) ([\w ]+?) into (?:a )?(?:close|closer|tight|full|better) view\b", r"zoom in on \1 \2"),
     (r"\bget ((?:the|that|this) [\w ]+?) nice and (?:big|large|close)\b", r"zoom in on \1"),
     (r"^home in on ", "zoom in on "),
-    (r"(?<!, )(?<!steps: )\b(left|right|up|down), \1\b(?!,[^.;]*\b(?:each|apiece)\b)", r"\1"),
+    (r"(?<!left, )(?<!right, )(?<!up, )(?<!down, )(?<!steps: )\b(left|right|up|down), \1\b(?!,[^.;]*\b(?:each|apiece)\b)", r"\1"),
     (r"\bzoom (?:in )?(?:on to|onto) ", "zoom in on "),
     (r"\bclick (?=an? |one |the |some |two |three )", "take "),
     (r"\balter (?=the |your )", "change "),
