@@ -77,6 +77,14 @@ _BEFORE_OBJECT = frozenset({"on", "at", "onto", "find", "locate", "follow", "tra
 """Words before a noun phrase that names an object in the picture."""
 
 
+_LAST_WORDS = {
+    "can": frozenset(
+        {"jerry", "watering", "petrol", "gas", "fuel", "oil", "paint", "spray", "tin", "trash", "garbage", "milk", "beer"}
+    ),
+    "steer": frozenset({"skid"}),
+}
+"""Command words and auxiliaries that end a compound with certain nouns: "the jerry can", "the skid steer"."""
+
 _NO_MODIFIERS = frozenset({"other", "same", "own", "next", "last", "only", "whole"})
 """Words before a noun that form no compound with it: "the other camera"."""
 
@@ -99,7 +107,8 @@ def with_compound_nouns(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
             out[i] = x.reworded(x.word, "FREE")
         if x.word == "no" and _is_prohibition(out[i - 1], after, later):
             out[i] = x.reworded(x.word, "FREE")
-        if _is_modifier(out, i, after) or _is_head(out, i, after) or _is_numbered(out, i, after):
+        is_last = out[i - 1].word in _LAST_WORDS.get(x.word, ()) and not (after is not None and after.has("SELF"))
+        if is_last or _is_modifier(out, i, after) or _is_head(out, i, after) or _is_numbered(out, i, after):
             out[i] = x.reworded(x.word, "FREE")
     return out
 

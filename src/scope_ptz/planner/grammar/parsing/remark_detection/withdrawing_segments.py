@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 from scope_ptz.planner.grammar.lexing.lexer import lexemes_of
 from scope_ptz.planner.grammar.parsing.remark_detection.features import statement_features_of
@@ -11,7 +12,7 @@ from scope_ptz.planner.grammar.parsing.remark_detection.segments import segments
 from scope_ptz.planner.grammar.parsing.remark_detection.shorter_versions import MAX_SHORTENED_CHARS
 
 _MIN_LOG_ODDS = 0.5
-"""At this value, one in a hundred harmless instructions is asked about (``python -m benchmarks.withdrawal_model``)."""
+"""At this value, one in two hundred harmless instructions is asked about (``python -m benchmarks.withdrawal_model``)."""
 
 _COMMANDS = (
     "PAN", "TILT", "TURN", "AIM", "RAISE", "ZOOM", "ENLARGE", "WIDEN", "SHOW", "FIND", "COUNT", "READ", "DESCRIBE", "SNAP", "SCAN",
@@ -20,6 +21,21 @@ _COMMANDS = (
 """Verbs that never begin a statement about a command, unlike "hold it", "leave it" and "check with me first"."""
 
 _MAX_SEGMENTS = 3  # segments of one instruction that are yielded: for each of them the caller plans once more
+
+
+@dataclass(frozen=True, slots=True)
+class WithdrawingSegment:
+    """A segment that probably takes a command back.
+
+    Attributes:
+        text: Its words.
+        rest: The instruction without it.
+        before: If other segments follow it, the beginnings of the instruction before it, each a segment shorter than the previous.
+    """
+
+    text: str
+    rest: str
+    before: tuple[str, ...]
 
 
 def is_command(text: str, presets: tuple[str, ...]) -> bool:
@@ -33,8 +49,8 @@ def is_command(text: str, presets: tuple[str, ...]) -> bool:
     return first is not None and first.has(*_COMMANDS) and not first.has("TELL")
 
 
-def withdrawing_segments(text: str, presets: tuple[str, ...]) -> Iterator[tuple[str, str]]:
-    """Yield each segment that probably takes a command back, and the text without it; the likeliest first.
+def withdrawing_segments(text: str, presets: tuple[str, ...]) -> Iterator[WithdrawingSegment]:
+    """Yield each segment that probably takes a command back; the likeliest first.
 
     A segment that the plan depends on ("no, 30") is none: the caller compares the plans of both texts.
 
@@ -52,6 +68,7 @@ def withdrawing_segments(text: str, presets: tuple[str, ...]) -> Iterator[tuple[
     }
     likeliest = sorted((index for index, value in log_odds.items() if value > _MIN_LOG_ODDS), key=lambda index: -log_odds[index])
     for index in likeliest[:_MAX_SEGMENTS]:
-        segment = segments[index]
-        following = segments[index + 1].start if index + 1 < len(segments) else len(text)
-        yield segment.text, (text[: segment.start] + text[following:]).strip(" ,;:-–—")
+        segment, is_last = segments[index], index + 1 == len(segments)
+        following = len(text) if is_last else segments[index + 1].start
+        before = () if is_last else tuple(text[: earlier.end] for earlier in reversed(segments[:index]))
+        yield WithdrawingSegment(segment.text, (text[: segment.start] + text[following:]).strip(" ,;:-–—"), before)

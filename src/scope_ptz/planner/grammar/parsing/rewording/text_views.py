@@ -10,13 +10,21 @@ _MOVED = re.compile(r"\b(?:left|right|up|down|(?:pan|tilt|zoom)\w*(?! in on| on)
 
 _MOVES = re.compile(r"\b(?:pan|tilt|zoom|turn|move|swing|rotate|look|lift|raise|lower|left|right|up|down|in|out)\b", re.IGNORECASE)
 
+_WORD = re.compile(r"\w")
+
 
 def _wanted_in_frame(match: re.Match[str]) -> str:
-    """Return "zoom in on the crane" for "I want the crane in the picture". After a move, the wish is the reason for the move."""
-    return match[0] if _MOVES.search(match.string[: match.start()]) else f"zoom in on {match[1]}"
+    """Return "zoom in on the crane" for "I want the crane in the picture". Beside a move, the wish is the reason for the move."""
+    if _MOVES.search(match.string[: match.start()]):
+        return match[0]
+    is_alone = not _WORD.search(match.string[: match.start()] + match.string[match.end() :])
+    return f"zoom in on {match[1]}" if is_alone else f"let me see {match[1]}"
 
 
 VIEWS = (
+    (r"^preset (?:recall|call[- ]?up|call|selection|select)(?: test)?[:,]? (?=\w)", "go to "),
+    (r"^(?:the )?presets? list(?: first)?(?=\W*$|[,.;]| then\b| and\b)", "list the presets"),
+    (r"([,.;] (?:and )?(?:then )?)image(?=\W*$)", r"\1take an image"),
     (
         r"\b(?:know|see|hear|tell me) (?:what|which) (?:(?:camera|memory|stored|saved|preset) )?"
         r"(?:places|positions|spots|presets|views) (?:this|the|that) (?:camera|thing|unit|device|system) "

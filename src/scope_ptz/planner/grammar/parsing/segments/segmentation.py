@@ -95,7 +95,7 @@ class _Splitter(ClauseBoundaryDetector):
             )
         ):
             self._close()
-            self.link = "." if self.link == "." else "then"
+            self.link, self.opener = "." if self.link == "." else "then", lexeme
             return i + 1
         if (
             self.words
@@ -158,7 +158,7 @@ class _Splitter(ClauseBoundaryDetector):
         if lexeme.word == "so" and self.words and i + 1 < len(self.lexemes) and self._is_verb(i + 1):
             self.marker = "REASON" if self._is_reason_for(self.lexemes[i + 1]) else self.marker  # "bit of glare so tilt down"
             self._close()
-            self.link = "and"
+            self.link, self.opener = "and", lexeme
             return i + 1  # "the picture is too dark, so pan right"
         if not self.completed and lexeme.has("COMMA", "DASH") and full_match(_OPENER, self.words):
             self.words = []
