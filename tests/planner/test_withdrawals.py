@@ -55,8 +55,8 @@ def test_questions_are_answered_whatever_is_said_beside_them() -> None:
 
 
 def test_withdrawing_segments_come_with_the_text_without_them() -> None:
-    found = list(withdrawing_segments("Go to the yard. I was only joking. Thanks.", PRESETS))
-    assert found == [("I was only joking", "Go to the yard. Thanks.")]
+    (found,) = withdrawing_segments("Go to the yard. I was only joking. Thanks.", PRESETS)
+    assert (found.text, found.rest) == ("I was only joking", "Go to the yard. Thanks.")
 
 
 def test_long_and_single_texts_have_none() -> None:

@@ -157,6 +157,8 @@ class Resolver(CountingSteps):
         ref = step.ref
         if step.how == "show" and (one := _NUMBERED_ONE.search(ref.name)) is not None and foci_of(self.conversation[-1:]):
             return self._zoomto(ast.ZoomTo(ast.Thing(one[0], definite=True)))  # "show me the first one" of the workers just listed
+        if step.how == "bare" and not self.conversation and _NUMBERED_ONE.fullmatch(ref.name):
+            raise UnresolvedError("Which one do you mean? Please name a preset, or say what I shall do.")
         if ref.is_first_view and self._can_return_to_start():
             return [ast.Back(to_start=True)]
         preset = self.find_place(ref) if self.presets is not None or step.how in {"go", "use"} or ref.explicit else None

@@ -153,7 +153,7 @@ class Reader:
         if (
             (match := full_match(r"(?P<body>_+?) (COMMA)? (EACHTIME|at ATATIME) (FILLER|INTURN|AGAINWORD)*", lexemes))
             and not has_question_mark
-            and not search("(COUNTNOUN|BE) \\Z", match["body"])
+            and not search("(COUNTNOUN|BE|STEPNOUN of NUM DEG?) \\Z", match["body"])
         ):
             body = match["body"]
             if (ahead := full_match(r"with (?P<what>_+)", body)) is not None:

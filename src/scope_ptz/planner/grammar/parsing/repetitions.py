@@ -22,6 +22,7 @@ from scope_ptz.planner.grammar.instruction_tree import (
     Turn,
     Unclear,
 )
+from scope_ptz.planner.grammar.parsing.turns_in_steps import split_into_steps
 
 
 def add_each_time(out: list[Step], step: EachTime) -> None:
@@ -40,7 +41,7 @@ def add_each_time(out: list[Step], step: EachTime) -> None:
                 first -= 1
             out[first:] = [s for place in out[first:] for s in (place, *step.body)]
             return
-    out.extend(step.body)
+    out.extend(split_into_steps(each) for each in step.body)
 
 
 def steps_at_last_place(out: list[Step]) -> tuple[Step, ...]:

@@ -12,7 +12,10 @@ from scope_ptz.planner.grammar.parsing.remark_detection.segments import segments
 from scope_ptz.planner.grammar.parsing.remark_detection.shorter_versions import MAX_SHORTENED_CHARS
 
 _MIN_LOG_ODDS = 0.5
-"""At this value, one in two hundred harmless instructions is asked about (``python -m benchmarks.withdrawal_model``)."""
+"""At this value, one in two hundred harmless instructions is asked about.
+
+Source: ``python -m benchmarks.planner_models.withdrawal_model``.
+"""
 
 _COMMANDS = (
     "PAN", "TILT", "TURN", "AIM", "RAISE", "ZOOM", "ENLARGE", "WIDEN", "SHOW", "FIND", "COUNT", "READ", "DESCRIBE", "SNAP", "SCAN",

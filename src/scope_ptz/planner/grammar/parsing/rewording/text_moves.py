@@ -210,6 +210,8 @@ MOVES = (
     ),
     (r"\b(?:pull|go) (in|out) all the way(?: there)?\b", r"zoom all the way \1"),
     (r"\bzoom (?:max|full|fully) (in|out)\b", r"zoom all the way \1"),
+    (r"\bzoom (?:to|at) (?:its |the )?(?:telephoto|tele|narrow|long) (?:limit|end|stop)\b", "zoom all the way in"),
+    (r"\bzoom (?:to|at) (?:its |the )?(?:wide|wide[- ]angle|short) (?:limit|end|stop)\b", "zoom all the way out"),
     (r"\bput it back (?:to )?where it (?:normally |usually )?(?:sits|lives|belongs|goes|points|looks)\b", "go home"),
     (r"\b(every (?:preset|view|position|spot)) there\b", r"\1"),
     (r"\beach preset: (?:1[.)] )?go to (?:the|that|each) preset[;,.] (?:2[.)] )?(?:then |and )?", "each preset, "),

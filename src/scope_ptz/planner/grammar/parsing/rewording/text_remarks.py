@@ -92,6 +92,15 @@ REMARKS = (
     ),
     (r"^(?:pardon|forgive|excuse) me for \w+ing,? (?:but )?", ""),
     (
+        r"(?<=\w)(?:,| and| because| as| so)+ (?:i|we) (?:want|need|have|ought) to show (?:it |them )?(?:to )?"
+        r"(?:my|our|his|her|their|the) (?:\w+(?:or|er|man|woman|ist|son)|boss|lads?|police|council|chief|wife|kids?|mum|dad)\W*$",
+        "",
+    ),
+    (
+        r"(\bdon['’]?t (?:touch|move|change) the \w+), (?:that|it)['’]?s (?:fine|ok|okay|good|perfect) (?:where|as|how) it is\b",
+        r"\1",
+    ),
+    (
         r"\b((?:photo|picture|pic|shot|snap|still)\b.*?) for my (?:sister|brother|wife|husband|mum|dad|mother|father|son|daughter"
         r"|grandson|granddaughter|friend|colleague|neighbou?r)\W*$",
         r"\1",

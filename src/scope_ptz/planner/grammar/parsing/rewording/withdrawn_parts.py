@@ -19,7 +19,7 @@ _ENDS = "COMMA|STOP|DASH|COLON|QUESTION"
 _SEPARATORS = ("COMMA", "STOP", "DASH", "COLON", "AND", "THEN", "BUT")
 _SIGNAL = (
     "no|nah|nope|wait|sorry|actually|hang_on|hold_on|hang on|hold on|(scratch|scrap|strike) that|on (second|ORDINAL) "
-    "(thought|thoughts)|changed my mind|correction COLON?"
+    "(thought|thoughts)|on reflection|changed my mind|correction COLON?"
 )
 _PAUSES = "((?!actually|sorry|wait) FILLER|COMMA|DASH|STOP|BUT|SELF)*"
 _ALONE = "alone|as it is|as_it_is|as is|where it is|the way it is|be"
@@ -29,8 +29,8 @@ _FORMS = (
     rf"(LEAVE|keep) DET* (?P<object>{_ACTS}) (?P<alone>({_ALONE}))",
     rf"(?P<firm>(forget|omit|skip|cancel|scrap|drop|scratch|ignore|disregard|never mind|LEAVE OUT)) {_OBJECT}",
     rf"LEAVE {_OBJECT}",
-    rf"(do|DOV) not (bother)? (?P<verb>TRACK|ZOOM|COUNT|SNAP|PAN|TILT|TAKE|READ|FIND|TRACK-ING|ZOOM-ING|COUNT-ING|PAN-ING|TILT-ING)"
-    rf" (in|IN|on)* (PRON|it|him|them|{_OBJECT})?",
+    "(do|DOV|please_do) not (bother)? (?P<verb>TRACK|ZOOM|COUNT|SNAP|PAN|TILT|TAKE|READ|FIND|TRACK-ING|ZOOM-ING|COUNT-ING|PAN-ING|"
+    rf"TILT-ING) (in|IN|on)* (PRON|it|him|them|{_OBJECT})?",
 )
 _SIGNALS = f"(?P<signal>({_SIGNAL}) (({_SIGNAL})|{_PAUSES.rstrip('*')})*)"
 _TAKING_BACK = tuple(
@@ -39,7 +39,8 @@ _TAKING_BACK = tuple(
 _FURTHER = rf"({_ENDS}|AND|OR|FILLER)+ (DET ({_ACTS})|({_ACTS}) (too|either|FILLER|ADVERB)* (({_ENDS})|\Z))"
 """Another action that is taken back along with the first one: "forget the tilt and the pan"."""
 
-_KEPT = "((?P<there>(CARRY|go|goto) there)|(DOACT)? (DET)? (?P<act>PAN|TILT|ZOOM|COUNT|PICTURE))"
+_KEPT = "((?P<there>(CARRY|go|goto) there|SHOW SELF (it|there)?)|(DOACT)? (DET)? (?P<act>PAN|TILT|ZOOM|COUNT|PICTURE))"
+_NEEDED = "((BE|'s) (required|needed|wanted|necessary))?"
 _REASON = (
     f"({_ENDS}) (because|as|since|FILLER)* (NOONE|(DET|FREE|SELF|SOMEONE){{1,4}} ((DOV|do|MODAL) not|never)) "
     f"(want|wants|WRAPPER|like|likes|allow|allows|need|needs) (it|that|this|them|any|PRON) (FILLER)* ({_ENDS})*"
@@ -96,7 +97,7 @@ def _is_named_or_reason(kept: tuple[Lexeme, ...], after: Sequence[Lexeme]) -> bo
     """
     if full_match(_REASON, after):
         return True
-    only = full_match(f"({_ENDS}|FILLER)* ((just|only) {_KEPT}|{_KEPT} (only|alone)) ({_ENDS}|FILLER)*", after)
+    only = full_match(f"({_ENDS}|FILLER)* ((just|only) {_KEPT} {_NEEDED}|{_KEPT} (only|alone)) ({_ENDS}|FILLER)*", after)
     parts = _parts(kept)
     if only is None or len(parts) != 1:
         return False

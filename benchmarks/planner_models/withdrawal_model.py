@@ -1,6 +1,6 @@
 """Train the model that tells statements that take a command back from harmless remarks, and measure it.
 
-    python -m benchmarks.withdrawal_model [--write]
+    python -m benchmarks.planner_models.withdrawal_model [--write]
 
 Harmless are the segments of the lots' rows without which the plan stays the same, and the statements of the commands that must be
 carried out. Four models are trained, each on three quarters of the files, and measured on the rest: for thresholds at which few
@@ -12,12 +12,11 @@ delivered is measured on the rows that are kept aside.
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from unittest.mock import patch
 
 import numpy as np
-from benchmarks.logistic_regression import Example, cross_validated, fitted, write
 from rich.progress import track
 from tests.planner import withdrawals
 from tests.planner.lots import FILES, Row, planned, rows, verdict
@@ -28,6 +27,8 @@ from scope_ptz.planner.grammar.parsing.remark_detection.model import WITHDRAWAL_
 from scope_ptz.planner.grammar.parsing.remark_detection.segments import segments_of
 from scope_ptz.planner.grammar.parsing.remark_detection.withdrawing_segments import is_command
 from scope_ptz.planner.grammar.parsing.rewording.plain_text import written_out
+
+from .logistic_regression import Example, cross_validated, fitted, write
 
 _MAX_SEGMENTS = 8  # instructions with more segments are not used, because each segment is left out in turn
 _MIN_OCCURRENCES = 2  # minimum number of segments with a feature
@@ -50,9 +51,10 @@ def main() -> None:
     statements = [(row, example) for row in withdrawals.rows("dev") for example in _segments_of_statement(row)]
     examples = [example for _, example in (*harmless, *statements)]
     log_odds = cross_validated(examples, min_occurrences=_MIN_OCCURRENCES)
+    moving = np.array([_is_moving(row) for row, _ in harmless])
     _print_table(
-        _highest([row for row, _ in harmless], log_odds[: len(harmless)]),
-        _highest([row for row, _ in statements], log_odds[len(harmless) :]),
+        _highest([(row.instruction, False) for row, _ in harmless if _is_moving(row)], log_odds[: len(harmless)][moving]),
+        _highest([(row.instruction, not row.carried_out) for row, _ in statements], log_odds[len(harmless) :]),
     )
     if options.write:
         write(fitted(examples, min_occurrences=_MIN_OCCURRENCES), WITHDRAWAL_WEIGHTS_FILE)
@@ -86,12 +88,11 @@ def _segments_of_statement(row: withdrawals.Row) -> Iterator[Example]:
         yield Example(row.source, features, label=not row.carried_out)
 
 
-def _highest(owners: list[Row] | list[withdrawals.Row], log_odds: np.ndarray) -> dict[tuple[str, bool], float]:
-    """Return the highest log-odds of the segments of each row, by instruction and whether it must be asked about."""
+def _highest(rows_of_segments: Sequence[tuple[str, bool]], log_odds: np.ndarray) -> dict[tuple[str, bool], float]:
+    """Return the highest log-odds of the segments of each row: an instruction, and whether it must be asked about."""
     highest: dict[tuple[str, bool], float] = {}
-    for row, value in zip(owners, log_odds.tolist(), strict=True):
-        is_asked = isinstance(row, withdrawals.Row) and not row.carried_out
-        highest[row.instruction, is_asked] = max(highest.get((row.instruction, is_asked), value), value)
+    for row, value in zip(rows_of_segments, log_odds.tolist(), strict=True):
+        highest[row] = max(highest.get(row, value), value)
     return highest
 
 

@@ -1,6 +1,6 @@
 """Train the model that tells remarks from requests, and measure it on lots that it was not trained on.
 
-    python -m benchmarks.remark_model [--write]
+    python -m benchmarks.planner_models.remark_model [--write]
 
 A segment of an instruction is a remark if the instruction without it still gets the expected plan. Four models are trained, each on
 three quarters of the lots, and measured on the rest. Only rows of the split ``dev`` are used. With ``--write`` a model that is
@@ -14,7 +14,6 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
-from benchmarks.logistic_regression import Example, cross_validated, fitted, write
 from rich.progress import track
 from tests.planner.lots import FILES, Row, planned, rows, verdict
 
@@ -22,6 +21,8 @@ from scope_ptz.planner.grammar.parsing.remark_detection.features import features
 from scope_ptz.planner.grammar.parsing.remark_detection.model import REMARK_WEIGHTS_FILE
 from scope_ptz.planner.grammar.parsing.remark_detection.segments import segments_of
 from scope_ptz.planner.grammar.parsing.rewording.plain_text import written_out
+
+from .logistic_regression import Example, cross_validated, fitted, write
 
 _MAX_SEGMENTS = 8  # instructions with more segments are not used, because each segment is left out in turn
 _MIN_OCCURRENCES = 3  # minimum number of segments with a feature

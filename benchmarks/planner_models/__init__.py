@@ -1,0 +1,1 @@
+"""Train the linear models of the built-in planner, and measure them."""
