@@ -161,7 +161,6 @@ def test_a_picture_of_the_current_view_needs_no_thing(instruction: str) -> None:
     ("instruction", "expected"),
     [
         ("Can you show me the boat yard? I want to know if it's worth launching today.", "go_to_preset(boat-yard)"),
-        ("zoom in on the winch but no photos please, my skipper hates that", zoom("winch")),
         ("find the green barge, it should be our delivery", zoom("green barge")),
         ("I'm typing this in the rain, go to the boat yard", "go_to_preset(boat-yard)"),
         ("while we're shut can you zoom in on the cracked pane", zoom("cracked pane")),
