@@ -522,6 +522,14 @@ def test_the_nearest_is_one_of_all_if_none_is_as_asked() -> None:
     assert calls == [(ZOOM, {"description": "nearest van"})]
 
 
+def test_the_presets_are_compared_for_one_thing_after_another() -> None:
+    compared = "which preset has the most people?", "and forklifts?", "and skips?"
+    calls, _ = last_calls(*compared, looks=(1, 2, 1, 2, 7, 3))
+    assert [name for name, _ in calls] == ["go_to_preset", "count_objects"] * 2
+    calls, _ = last_calls(*compared, "go there", looks=(1, 2, 1, 2, 7, 3))
+    assert calls == [("go_to_preset", {"name": "gate"})]
+
+
 @pytest.mark.parametrize("said", ["and forklifts?", "what about the forklifts?"])
 def test_other_things_are_looked_for_at_the_same_presets(said: str) -> None:
     calls, _ = last_calls("which presets show people?", said)

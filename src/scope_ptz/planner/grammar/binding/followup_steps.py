@@ -11,6 +11,7 @@ from scope_ptz.english.grammar.questions import question_tree as tree
 from scope_ptz.english.grammar.questions.question_parser import parse_question
 from scope_ptz.planner.grammar import instruction_tree as ast
 from scope_ptz.planner.grammar.binding.asked_things import with_other_predicate, with_other_thing
+from scope_ptz.planner.grammar.binding.earlier_comparison import comparison_of_turn
 from scope_ptz.planner.grammar.binding.focus import PLURAL, foci_of, latest_counts, like_to_know, things_named, which_one
 from scope_ptz.planner.grammar.binding.followups import is_adjective, is_other
 from scope_ptz.planner.grammar.binding.names import NUMBER_PLATES, Names, UnresolvedError
@@ -20,7 +21,6 @@ from scope_ptz.planner.grammar.binding.pairs import members_of
 from scope_ptz.planner.grammar.binding.pending_questions import pending_step, with_thing
 from scope_ptz.planner.grammar.binding.preset_matching import match_exactly
 from scope_ptz.planner.grammar.execution.answer_sentences import noun
-from scope_ptz.planner.grammar.parsing.instruction_parser import parse
 
 _ONE = re.compile(r"\bone\b", re.IGNORECASE)
 
@@ -121,9 +121,8 @@ class FollowUpSteps(Names):
         """Return the question "which presets show ...?" of the last turn about another thing: "and forklifts?"; None for others."""
         if not self.conversation or not named.text or has_one(named.text) or is_other(named.text):
             return None
-        steps = parse(self.conversation[-1].instruction, self.presets or ()).steps or ()
-        last = steps[0] if len(steps) == 1 and self.conversation[-1].exchanges else None
-        return replace(last, thing=named) if isinstance(last, ast.WhichPreset) else None
+        last = comparison_of_turn(self.conversation, self.presets or ()) if self.conversation[-1].exchanges else None
+        return replace(last, thing=named) if last is not None and last.thing.text else None
 
     def _says_nothing_about(self, named: ast.Thing, thing: ast.Thing) -> bool:
         """Return whether the last look does not say what to do with a thing that is named by its own noun, so that it is counted.
