@@ -420,3 +420,156 @@ def test_questions_about_the_future_move_nothing(question: str) -> None:
     calls, reply = last_calls("pan left 20", question)
     assert not calls
     assert reply.startswith("I cannot know when something will happen.")
+
+
+ASK, ZOOM = "query_answer", "zoom_to_object"
+BEHIND = {"answer": "A fence and a green skip are to the left of the crane.", "known": True}
+
+
+@pytest.mark.parametrize(
+    ("said", "place"),
+    [
+        ("and to the right?", "to the right of"),
+        ("to the right?", "to the right of"),
+        ("and on its right", "to the right of"),
+        ("and behind?", "behind"),
+        ("what about above it?", "above"),
+        ("and in front?", "in front of"),
+    ],
+)
+def test_another_direction_from_a_thing_is_asked_about_and_moves_nothing(said: str, place: str) -> None:
+    calls, _ = last_calls("where is the crane?", "what is to the left of it?", said, looks=(YES, BEHIND, YES))
+    assert calls == [(ASK, {"question": f"what is {place} the crane?", "view": "current"})]
+
+
+@pytest.mark.parametrize("before", ["pan left 20", "zoom in on the crane"])
+def test_to_the_right_turns_the_camera_after_other_turns(before: str) -> None:
+    calls, _ = last_calls("what is to the left of the crane?", before, "to the right 10", looks=(BEHIND, True, True))
+    assert calls == [("adjust_ptz", {"pan_deg": 10})]
+
+
+def test_both_are_not_two_things_of_long_ago() -> None:
+    conversation = "how many cars are there?", "how many men are there?", "where is the red car?", "zoom in on both"
+    calls, reply = last_calls(*conversation, looks=(2, 3, YES, True))
+    assert (calls, reply) == ([], "Which of the 2 cars do you mean?")
+
+
+@pytest.mark.parametrize(
+    ("said", "thing"),
+    [("zoom in on the nearer one", "crane"), ("zoom in on the farther one", "red skip"), ("zoom in on it", "crane")],
+)
+@pytest.mark.parametrize("asked", ["which is nearer, the red skip or the crane?", "is the red skip or the crane closer?"])
+def test_the_nearer_one_is_the_thing_that_the_answer_named(asked: str, said: str, thing: str) -> None:
+    nearer = {"answer": "The crane is closer: it is about 20 m away, the red skip about 30 m.", "known": True}
+    calls, _ = last_calls("zoom in on the nearest man", asked, said, looks=(True, nearer, True))
+    assert calls[-1] == (ZOOM, {"description": thing})
+
+
+def test_the_nearer_one_is_asked_about_if_the_answer_named_none() -> None:
+    unknown = {"answer": "I cannot tell which one is closer.", "known": False}
+    asked = "which is nearer, the red skip or the crane?"
+    calls, reply = last_calls("zoom in on the nearest man", asked, "zoom in on the nearer one", looks=(True, unknown, True))
+    assert (calls, reply) == ([], "Which of the 2 do you mean: the red skip or the crane?")
+
+
+def test_the_other_one_is_not_a_thing_of_before_the_camera_went_home() -> None:
+    calls, reply = last_calls(
+        "zoom in on the man with a hat", "go home", "zoom in on the left man", "no, the other one", looks=(True,)
+    )
+    assert not any(arguments.get("description") == "man with a hat" for _, arguments in calls)
+    assert reply.startswith("Which other man do you mean?")
+
+
+@pytest.mark.parametrize("said", ["no, the other clock", "the other one", "zoom in on the other one"])
+@pytest.mark.parametrize("number", [2, 4])
+def test_the_other_one_is_never_the_thing_that_the_camera_chose(said: str, number: int) -> None:
+    stage = Stage([True])
+    turn = stage.turn("zoom in on the clock")
+    (exchange,) = turn.exchanges
+    (outcome,) = exchange.outcomes
+    found = outcome.model_copy(update={"result": {**(outcome.result or {}), "matches": number, "chosen": "jeweller's clock"}})
+    turn = turn.model_copy(update={"exchanges": (exchange.model_copy(update={"outcomes": (found,)}),)})
+    stage.calls.clear()
+    assert stage.turn(said, (turn,)).reply.startswith("Which ")
+    assert not stage.calls
+
+
+@pytest.mark.parametrize("said", ["and back to the first one", "go to the first one", "now go to the second one"])
+def test_a_numbered_one_after_close_ups_is_not_taken_for_a_preset(said: str) -> None:
+    calls, reply = last_calls("zoom in on the left man", said, looks=(True,))
+    assert not calls
+    assert reply.startswith("Which one do you mean")
+    assert last_calls("count the cars", said)[0][0][0] == "go_to_preset"
+
+
+@pytest.mark.parametrize(
+    ("asked", "answer", "said"),
+    [
+        ("is anyone wearing a helmet?", "There is no person in view.", "zoom in on him"),
+        ("is anybody carrying a ladder?", "No, none of the 5 people in view are carrying ladders.", "follow her"),
+        ("is there a swan?", "No, there is no swan in view.", "zoom in on it"),
+    ],
+)
+def test_nothing_is_referred_to_after_an_answer_that_there_is_none(asked: str, answer: str, said: str) -> None:
+    calls, reply = last_calls(asked, said, looks=({"answer": answer, "known": True}, True))
+    assert not calls
+    assert "I found no " in reply
+
+
+def test_the_nearest_is_one_of_all_if_none_is_as_asked() -> None:
+    conversation = "how many vans are there?", "how many are moving?", "which is the nearest?", "zoom in on it"
+    calls, _ = last_calls(*conversation, looks=(4, 0, YES, True))
+    assert calls == [(ZOOM, {"description": "nearest van"})]
+
+
+def test_the_presets_are_compared_for_one_thing_after_another() -> None:
+    compared = "which preset has the most people?", "and forklifts?", "and skips?"
+    calls, _ = last_calls(*compared, looks=(1, 2, 1, 2, 7, 3))
+    assert [name for name, _ in calls] == ["go_to_preset", "count_objects"] * 2
+    calls, _ = last_calls(*compared, "go there", looks=(1, 2, 1, 2, 7, 3))
+    assert calls == [("go_to_preset", {"name": "gate"})]
+
+
+@pytest.mark.parametrize("said", ["and forklifts?", "what about the forklifts?"])
+def test_other_things_are_looked_for_at_the_same_presets(said: str) -> None:
+    calls, _ = last_calls("which presets show people?", said)
+    assert calls == [
+        call
+        for preset in ("gate", "highway")
+        for call in (("go_to_preset", {"name": preset}), ("count_objects", {"description": "forklifts", "view": "current"}))
+    ]
+
+
+@pytest.mark.parametrize(
+    "asked",
+    [
+        "are there more vans here or at the highway?",
+        "are there more vans at the highway or here?",
+        "do you see more vans here or at the highway",
+    ],
+)
+def test_here_or_there_is_counted_here_before_the_camera_leaves(asked: str) -> None:
+    calls, reply = last_calls(asked, looks=(5, 2))
+    assert [name for name, _ in calls] == ["count_objects", "go_to_preset", "count_objects"]
+    assert reply.startswith("I can see 5 vans here and 2 at highway. There are more vans here than at highway.")
+
+
+@pytest.mark.parametrize("said", ["copy that, now back to centre", "back to the centre", "go back to the centre please"])
+def test_the_centre_to_go_back_to_is_asked_about(said: str) -> None:
+    calls, reply = last_calls("pan left 20", said)
+    assert not calls
+    assert reply.startswith("Where is the centre?")
+
+
+@pytest.mark.parametrize(
+    ("said", "thing"),
+    [
+        ("zoom in on the yellow skip. sorry, the blue one", "blue skip"),
+        ("zoom in on the yellow skip, er, the blue one", "blue skip"),
+        ("zoom in on the red phone box. no, the black one", "black phone box"),
+        ("look at the dog on the left, I mean the one on the right", "dog on the right"),
+        ("zoom in on the big crane, no wait, the small one", "small crane"),
+    ],
+)
+def test_one_in_a_correction_is_of_the_kind_that_it_replaces(said: str, thing: str) -> None:
+    assert last_calls(said, looks=(True,))[0] == [(ZOOM, {"description": thing})]

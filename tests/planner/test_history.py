@@ -518,3 +518,21 @@ def test_the_question_which_way_to_turn_is_answered(instructions: tuple[str, ...
 )
 def test_an_offset_names_what_differs(pose: Pose, words: str) -> None:
     assert offset_text(Pose(), pose) == words
+
+
+def test_a_thing_instead_of_a_close_up_is_also_looked_for_in_the_wider_view() -> None:
+    stage = Stage([True, True, False, True], lands=Pose(20, -5, 5), simulated=True)
+    turns: tuple[PastTurn, ...] = (stage.turn("zoom in on the left car"),)
+    stage.lands = Pose(40, -5, 5)
+    turns = (*turns, stage.turn("zoom in on the van", turns))
+    stage.calls.clear()
+    stage.turn("wait, I meant the fox", turns)
+    assert [name for name, _ in stage.calls] == ["adjust_ptz", "zoom_to_object", "adjust_ptz", "zoom_to_object"]
+
+
+def test_a_camera_that_went_back_is_not_said_to_have_stayed() -> None:
+    stage = Stage([True, False], lands=Pose(20, -5, 5))
+    reply = talk(stage, "zoom in on the van", "wait, I meant the fox")[-1].reply
+    assert reply.startswith(
+        "I went back: the camera is at pan 0.0, tilt 0.0, zoom 1.0x again. I could not find the fox in this view."
+    )

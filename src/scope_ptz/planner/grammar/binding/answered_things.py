@@ -12,6 +12,10 @@ from scope_ptz.planner.grammar.execution.answer_sentences import head_and_rest, 
 _EXIST = re.compile(r"(?:yes, )?there are (\d+) ", re.IGNORECASE)
 _SINGLE = re.compile(r"yes, there is (?:an?|1|one)\b(?: (?P<thing>[^,:;.]+))?", re.IGNORECASE)
 _NONE = re.compile(r"(?:no, )?there (?:are|is) no\b", re.IGNORECASE)
+_DENIED = re.compile(r"(?:no|none|nobody|no one)\b", re.IGNORECASE)
+_COMPARED = re.compile(r"the (?P<thing>[^:;,.]+?) (?:is|are) (?:the )?(?:\w+er|\w+est|more|further|farther)\b", re.IGNORECASE)
+"""An answer that names one of two things: "The bus is closer: it is about 30 m away, the car about 45 m."."""
+
 _LISTED = re.compile(r"((?:An?|\d+) .+) are ")
 """An answer that lists the things: "A child, a man with a hat and 2 women are waiting."."""
 
@@ -52,6 +56,17 @@ def two_members(answer: str, description: str) -> tuple[str, ...]:
         return ()
     members = tuple(_described(item, noun(bare_noun(description), 1)) for item in items.groups())
     return members if len({*members} - {""}) == len(members) else ()
+
+
+def compared_thing(answer: str) -> str:
+    """Return the thing that the answer to a comparison names: "bus" for "The bus is closer: ..."; empty for others."""
+    match = _COMPARED.match(answer)
+    return match["thing"].lower() if match is not None else ""
+
+
+def denies_existence(answer: str) -> bool:
+    """Return whether an answer says that there is none: "No, none of the 14 people in view are wearing helmets."."""
+    return _DENIED.match(answer) is not None
 
 
 def single_thing(answer: str) -> str:

@@ -91,7 +91,8 @@ def asked_thing(question: str) -> AskedThing | None:
 
 def two_things(question: str) -> tuple[str, ...]:
     """Return the two things of a question: "taxi" and "bus" for "where are the taxi and the bus?"; nothing for others."""
-    described = _described(parse_question(question))
+    asked = parse_question(question)
+    described = asked.options if isinstance(asked, tree.Which) else _described(asked)
     if described is None or len(described.phrases) != 2:
         return ()
     if any(phrase.tests or phrase.order or phrase.ordinal for phrase in described.phrases):

@@ -102,13 +102,28 @@ def earlier_winners(conversation: Sequence[PastTurn], presets: tuple[str, ...]) 
     if last is None:
         return None
     for index in range(len(conversation) - 1, last - 1, -1):
-        steps = parse(conversation[index].instruction, presets).steps
-        compared = next((found for step in reversed(steps or ()) if (found := _comparison_of(step)) is not None), None)
+        compared = comparison_of_turn(conversation[: index + 1], presets)
         if compared is not None and not compared.any_of:
             counts = counts_at_presets(conversation[: index + 1])
             counts = counts_of_tour(counts) if index > last else [count for count in counts if count.turn == index]
             ranked = presets_of_rank({c.preset: c.number for c in counts}, compared.comparison, compared.rank)
             return tuple(ranked) or None
+    return None
+
+
+def comparison_of_turn(conversation: Sequence[PastTurn], presets: tuple[str, ...]) -> ast.WhichPreset | None:
+    """Return the comparison of presets that the last turn of a conversation made; None if it made none.
+
+    A short follow-up that visited several presets ("and forklifts?") made that of the turn before.
+    """
+    for end in range(len(conversation), 0, -1):
+        steps = parse(conversation[end - 1].instruction, presets).steps
+        if (compared := next((found for s in reversed(steps or ()) if (found := _comparison_of(s)) is not None), None)) is not None:
+            return compared
+        visited = {o.call.arguments.get("name") for e in conversation[end - 1].exchanges for o in e.outcomes}
+        is_followup = steps is None or all(isinstance(step, ast.WhatAbout) for step in steps)
+        if not is_followup or len(visited - {None}) < 2:
+            return None
     return None
 
 

@@ -10,7 +10,13 @@ from typing import TYPE_CHECKING, Literal
 from scope_ptz.english.grammar.questions import question_tree as tree
 from scope_ptz.english.grammar.questions.question_parser import parse_question
 from scope_ptz.english.grammar.questions.recognition import looks_like_description
-from scope_ptz.planner.grammar.binding.answered_things import single_thing, stated_number, two_members
+from scope_ptz.planner.grammar.binding.answered_things import (
+    compared_thing,
+    denies_existence,
+    single_thing,
+    stated_number,
+    two_members,
+)
 from scope_ptz.planner.grammar.binding.asked_things import asked_thing, two_things
 from scope_ptz.planner.grammar.binding.narrowing import are_exclusive
 from scope_ptz.planner.grammar.binding.noun_heads import (
@@ -28,6 +34,7 @@ if TYPE_CHECKING:
     from scope_ptz.planner.base import PastTurn, ToolOutcome
 
 _MAX_TURNS = 30  # maximum number of earlier turns that are considered
+_OTHER_PLACE = frozenset({"go_home", "go_to_preset"})
 _RECENT = 3  # "it" skips people for a thing only this far back
 _SHARE = re.compile(
     r"\bof (?:them|those|these)\b|^(?:and )?how many (?:are|have|wear|carry|hold)\b|^(?:and|what about|how about|now|any)\b",
@@ -60,6 +67,8 @@ class Focus:
         whole: The things of which these are a share: "workers" after "how many of them wear helmets?"; empty if they are no share.
         is_chosen: Whether the camera chose the thing among several that matched, to which "they" still refers.
         members: The descriptions of two things that the answer listed; empty if it did not.
+        compared: The descriptions of two things of which the question asked which is, for example, nearer; that which the answer
+            named comes first. The answer named none if ``number`` is 2.
     """
 
     description: str
@@ -69,6 +78,7 @@ class Focus:
     whole: str = ""
     is_chosen: bool = False
     members: tuple[str, ...] = ()
+    compared: tuple[str, ...] = ()
 
     @property
     def is_several(self) -> bool:
@@ -98,15 +108,18 @@ def foci_of(conversation: Sequence[PastTurn]) -> tuple[Focus, ...]:
 def things_named(conversation: Sequence[PastTurn]) -> tuple[str, ...]:
     """Return the descriptions of the single things that the latest looks named, in the order in which they were named."""
     named: list[str] = []
+    earlier: list[str] = []  # what was named before the camera went to another place
     for turn in conversation[-_RECENT:]:
         for outcome in (outcome for exchange in turn.exchanges for outcome in exchange.outcomes):
+            if outcome.call.name in _OTHER_PLACE and outcome.error is None:
+                earlier, named = named or earlier, []
             question = str(outcome.call.arguments.get("question", ""))
             both = two_things(question) if question else ()
             is_missing = (
                 outcome.result is not None and outcome.result.get("found") is False
             )  # a thing that is not there is no other one
-            named += () if is_missing else both or [focus.description for focus in _foci_of_look(outcome)]
-    return tuple(thing for thing in dict.fromkeys(named) if not names_several(thing))
+            named += () if is_missing else both or [focus.description for focus in _foci_of_look(outcome)[-1:]]
+    return tuple(thing for thing in dict.fromkeys(named or earlier) if not names_several(thing))
 
 
 def latest_counts(conversation: Sequence[PastTurn]) -> tuple[str, ...]:
@@ -163,6 +176,8 @@ def _foci_of_answer(question: str, answer: str) -> list[Focus]:
     thing = asked_thing(question)
     if thing is None:  # "is there a dog or a fox?"
         both = two_things(question)
+        if len(both) > 1 and isinstance(parse_question(question), tree.Which):
+            return [_focus_of_comparison(question, both, answer)]
         if len(both) > 1 and bare_noun(both[0]) == bare_noun(both[1]):  # "is there a red car or a blue one?"
             return [Focus(noun(bare_noun(both[0]), 2), None, "query_answer", question)]
         single = single_thing(answer) if len(both) > 1 else ""
@@ -171,8 +186,19 @@ def _foci_of_answer(question: str, answer: str) -> list[Focus]:
     is_about_others = isinstance(parse_question(question), tree.Describe)  # "what is to the left of the van?"
     stated = None if is_about_others else stated_number(answer, description)
     number = number if stated is None else stated
+    if stated is None and denies_existence(answer) and _asks_for_existence(question, description):
+        number = 0  # "is anyone wearing a helmet?" - "No, none of the 5 people in view is wearing a helmet."
     members = two_members(answer, description) if number == 2 else ()
     return [Focus(description, number, "query_answer", question, members=members)]
+
+
+def _focus_of_comparison(question: str, both: tuple[str, ...], answer: str) -> Focus:
+    """Return what "which is nearer, the bus or the car?" was about: the thing that the answer names, or both if it names none."""
+    named = compared_thing(answer)
+    if named not in both:
+        return Focus(noun(bare_noun(both[0]), 2), 2, "query_answer", question, members=both, compared=both)
+    other = both[1 - both.index(named)]
+    return Focus(named, 1, "query_answer", question, compared=(named, other))
 
 
 def referent(foci: Sequence[Focus], pronoun: str) -> Focus | None:
@@ -202,6 +228,12 @@ def referent(foci: Sequence[Focus], pronoun: str) -> Focus | None:
         return next(several, latest)
     things = (focus for focus in reversed(foci[-_RECENT:]) if not names_person(focus.description))
     return next(things, latest)
+
+
+def _asks_for_existence(question: str, description: str) -> bool:
+    """Return whether a question asks whether there is what it describes: "is there a dog?", "is anyone wearing a helmet?"."""
+    asked = parse_question(question)
+    return isinstance(asked, tree.Exists) or (isinstance(asked, tree.YesNo) and description.startswith("person "))
 
 
 def _is_anyone(focus: Focus) -> bool:

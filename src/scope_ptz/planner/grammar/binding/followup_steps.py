@@ -11,6 +11,7 @@ from scope_ptz.english.grammar.questions import question_tree as tree
 from scope_ptz.english.grammar.questions.question_parser import parse_question
 from scope_ptz.planner.grammar import instruction_tree as ast
 from scope_ptz.planner.grammar.binding.asked_things import with_other_predicate, with_other_thing
+from scope_ptz.planner.grammar.binding.earlier_comparison import comparison_of_turn
 from scope_ptz.planner.grammar.binding.focus import PLURAL, foci_of, latest_counts, like_to_know, things_named, which_one
 from scope_ptz.planner.grammar.binding.followups import is_adjective, is_other
 from scope_ptz.planner.grammar.binding.names import NUMBER_PLATES, Names, UnresolvedError
@@ -45,7 +46,7 @@ class FollowUpSteps(Names):
         last = self.foci[-1] if self.foci else None
         if last is None or self.antecedent:
             raise UnresolvedError(f"Which {noun(self.topic, 1)} do you mean?")
-        if pronoun == "both" and (index := self._pair_with(last.description)) is not None:
+        if pronoun == "both" and (index := self._pair_with(last.description)) is not None and self._is_still_meant(index):
             one, other = (ast.Thing(thing, definite=True) for thing in members_of(self.foci[index]))
             self.antecedent = other.text
             return [*self._to_group_view(), ast.ZoomTo(one), ast.WiderView(), ast.ZoomTo(other)]
@@ -59,6 +60,12 @@ class FollowUpSteps(Names):
             raise UnresolvedError("Which two things do you mean? Please name them." if group is None else which_one(group))
         self.antecedent = noun(last.description, 1) if last.is_several else last.one
         return [ast.ZoomTo(ast.Thing(self.antecedent, definite=True))]
+
+    def _is_still_meant(self, pair: int) -> bool:
+        """Return whether everything that was looked at since two things were found is one of them, so that "both" means these."""
+        later, kind = self.foci[pair + 1 :], self.foci[pair].description
+        members = self.foci[pair].members
+        return all(is_same_kind(focus.description, kind) or focus.description in members for focus in later)
 
     def _to_group_view(self) -> Sequence[ast.Step]:
         """Return the step that returns from a close-up to the view in which several things were seen, if one of them is meant.
@@ -89,6 +96,8 @@ class FollowUpSteps(Names):
             return [ast.Read(self.thing(step.thing), self._view(None))]
         if self.foci and not pending and (rephrased := with_other_predicate(self.foci[-1].question, step.thing)):
             return self._bind(ast.Ask(rephrased))
+        if (tour := self._tour_for(step.thing)) is not None:
+            return self._bind(tour)
         described = self._with_noun_if_bare(step.thing)
         is_pursuit = bool(self.foci) and self.foci[-1].look == "track_object"  # the next thing is followed from where the camera is
         is_among = (has_one(described.text) or is_other(described.text)) and not is_pursuit
@@ -107,6 +116,13 @@ class FollowUpSteps(Names):
         if self._says_nothing_about(described, thing):
             return self._count(ast.Count((thing,)))
         return [*widening, self._last_look_at(thing, topic)]
+
+    def _tour_for(self, named: ast.Thing) -> ast.Step | None:
+        """Return the question "which presets show ...?" of the last turn about another thing: "and forklifts?"; None for others."""
+        if not self.conversation or not named.text or has_one(named.text) or is_other(named.text):
+            return None
+        last = comparison_of_turn(self.conversation, self.presets or ()) if self.conversation[-1].exchanges else None
+        return replace(last, thing=named) if last is not None and last.thing.text else None
 
     def _says_nothing_about(self, named: ast.Thing, thing: ast.Thing) -> bool:
         """Return whether the last look does not say what to do with a thing that is named by its own noun, so that it is counted.

@@ -22,6 +22,10 @@ _REJECTING = "(FILLER|COMMA)* (no|nope|nah|sorry|oops) ((COMMA|DASH)+|(?=the))"
 """The beginning of a follow-up that corrects the turn before: "no, the woman on the left"."""
 
 _LEAD_ABOUT = "(FILLER|COMMA|AND|BUT|now|so|ok|okay|then)* (what_about|how_about)"
+_LEAD_DIRECTION = "(FILLER|COMMA|AND|BUT|now|so|ok|okay|then|what_about|how_about|what|is|BE)*"
+_TO_SIDE = "(to|on|at)? (DET|its|his|her|their)? (?P<side>LEFT|RIGHT|left|right) (SIDE|side|hand)*"
+_BEYOND = "(?P<place>above|below|behind|underneath|beneath)"
+_IN_FRONT = "in DET? front|in_front"
 _SIDE = "left|right|middle|centre|center|top|bottom"
 _APOLOGIES = frozenset({"sorry", "oops", "my_mistake"})
 """Courtesy before a follow-up that corrects the turn before: "sorry, the right half"."""
@@ -106,6 +110,30 @@ def question_about_side(text: str, presets: tuple[str, ...]) -> tuple[ast.Step, 
         f"in the {side}" if side in {"middle", "centre", "center"} else f"{'on' if side in {'left', 'right'} else 'at'} the {side}"
     )
     return (ast.WhatAbout(ast.Thing(predicate=place)),)
+
+
+def question_in_other_direction(text: str, presets: tuple[str, ...]) -> tuple[ast.Step, ...] | None:
+    """Return the step of "and to the right?" after "what is to the left of the van?"; None for other texts."""
+    pattern = f"{_LEAD_DIRECTION} ({_TO_SIDE}|{_BEYOND}|{_IN_FRONT}) (of it|it|FILLER|QUESTION|STOP)*"
+    match = full_match(pattern, lexemes_of(text, presets))
+    if match is None or text.strip(" .?!").lower() in {"left", "right"}:
+        return None
+    if match.has("side"):
+        place = f"to the {match['side'][0].word} of"
+    else:
+        place = match["place"][0].word if match.has("place") else "in front of"
+    return (ast.WhatAbout(ast.Thing(predicate=f"{place} it")),)
+
+
+def is_return_to_centre(text: str) -> bool:
+    """Return whether a whole text asks to go back to "the centre", which has no single meaning: "now back to centre"."""
+    return (
+        full_match(
+            "(FILLER|COMMA|STOP|AND|NOW|THEN)* (go|come|CARRY|TURN|PAN)? (BACK|SWITCH|go_back)+ to CENTREWORD (FILLER|STOP|COMMA)*",
+            lexemes_of(text),
+        )
+        is not None
+    )
 
 
 def question_about_topic(text: str, presets: tuple[str, ...]) -> tuple[ast.Step, ...] | None:

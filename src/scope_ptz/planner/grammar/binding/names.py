@@ -38,7 +38,15 @@ from scope_ptz.planner.grammar.binding.noun_heads import (
     names_vehicle,
     with_ones_replaced,
 )
-from scope_ptz.planner.grammar.binding.pairs import members_of, names_neighbour, neighbour_of, other_of, pair_in, taken_of
+from scope_ptz.planner.grammar.binding.pairs import (
+    compared_one,
+    members_of,
+    names_neighbour,
+    neighbour_of,
+    other_of,
+    pair_in,
+    taken_of,
+)
 from scope_ptz.planner.grammar.binding.preset_matching import match_preset, plausible_name
 from scope_ptz.planner.grammar.execution.answer_sentences import noun
 
@@ -151,6 +159,9 @@ class Names:
         if (other := _OTHER.fullmatch(thing.text)) is not None and thing.definite and self.foci:
             self.antecedent = self._other(other["noun"] or "")
             return ast.Thing(self.antecedent, definite=True)
+        if (compared := self._compared(thing.text)) is not None:
+            self.antecedent = compared
+            return ast.Thing(compared, definite=True)
         if self.foci and not self.antecedent and (neighbour := neighbour_of(thing.text, self.foci[-1].one)):
             self.antecedent = neighbour
             return ast.Thing(neighbour, definite=True)
@@ -163,6 +174,7 @@ class Names:
             text = self._with_owner(replace(thing, text=self._with_object(self._with_noun(thing.text))))
             self.antecedent = text
             return replace(thing, text=text)
+        self._ask_about_none(thing)
         if not (description := self._narrowed_group(thing)):
             if thing.pronoun in PERSONAL:
                 raise UnresolvedError(f"Who do you mean by '{thing.pronoun}'? Please name the person.")
@@ -171,6 +183,31 @@ class Names:
         predicate = with_region_noun(thing.predicate, description)
         self.antecedent = narrowed(description, predicate) if predicate else description
         return ast.Thing(self.antecedent, definite=True)
+
+    def _compared(self, text: str) -> str | None:
+        """Return which of two things that the last look compared is "the nearer one"; None for other words.
+
+        Raises:
+            UnresolvedError: The answer did not say which one is nearer.
+        """
+        compared = compared_one(self.foci[-1], text) if self.foci and not self.antecedent and text else None
+        if compared == "":
+            one, other = self.foci[-1].compared
+            raise UnresolvedError(f"{WHICH_ONE}2 do you mean: the {one} or the {other}?")
+        return compared
+
+    def _ask_about_none(self, thing: ast.Thing) -> None:
+        """Ask what a pronoun means directly after an answer that there is no such thing: "zoom in on him".
+
+        Raises:
+            UnresolvedError: The last turn found none.
+        """
+        last = foci_of(self.conversation[-1:])[-1:]
+        if self.antecedent or not self.foci or not thing.pronoun or thing.predicate or not last or last[0].number != 0:
+            return
+        kind = "Who" if thing.pronoun in PERSONAL else "What"
+        named = "person" if kind == "Who" else "thing"
+        raise UnresolvedError(f"{kind} do you mean by '{thing.pronoun}'? I found no {last[0].one}. Please name the {named}.")
 
     def _narrowed_group(self, thing: ast.Thing) -> str:
         """Return the description of the things that a pronoun or a predicate is about.
@@ -204,6 +241,9 @@ class Names:
         others = [thing for thing in things if thing != current.lower()]
         group = next((f for f in reversed(self.foci) if f.is_several and is_same_kind(f.description, current)), None)
         is_of_many = group is not None and (group.number or 0) > 2
+        last = self.foci[-1]
+        if last.is_chosen and not self.antecedent:
+            is_of_many = (self.foci[-2].number or 0) > 2  # the camera chose it among several
         is_kind = not is_of_many and (named == "one" or (len(others) == 1 and head_noun(others[0]) == kind))
         if is_kind and len(others) == 1 and current.lower() in things:
             return others[0]

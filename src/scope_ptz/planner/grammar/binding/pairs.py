@@ -18,6 +18,14 @@ _OPPOSITES = {
 }  # fmt: skip
 """Words that tell two things apart by their order, with their opposites."""
 _OPPOSITE = {**_OPPOSITES, **{second: first for first, second in reversed(_OPPOSITES.items())}, "last": "first"}
+_RANKS = (
+    ("nearer nearest closer closest", "farther farthest further furthest"), ("bigger biggest larger largest", "smaller smallest"),
+    ("taller tallest higher highest", "shorter shortest lower lowest"),
+)  # fmt: skip
+_RANK = {word: 2 * i + j for i, pair in enumerate(_RANKS) for j, words in enumerate(pair) for word in words.split(" ")}
+"""Words that compare two things. The numbers of opposites differ in their last bit only."""
+
+_RANKED_ONE = re.compile(r"(?P<rank>\w+)(?: one| of the two| of them)?", re.IGNORECASE)
 _AFTER = re.compile(r"(?:next|following) one|one (?:after|following)(?: (?:it|that))?", re.IGNORECASE)
 _BEFORE = re.compile(r"previous one|one before(?: (?:it|that))?", re.IGNORECASE)
 _WORN = re.compile(r" (?:with|wearing|carrying|holding) (?=\w)")
@@ -94,6 +102,25 @@ def other_of(pair: Focus, taken: str) -> str:
     if len(_WORN.findall(taken)) == 1 and not _WORN.search(pair.description):
         return _WORN.sub(" without ", taken)
     return ""
+
+
+def compared_one(focus: Focus, text: str) -> str | None:
+    """Return the thing that "the nearer one" means after "which is nearer, the bus or the car?"; None for other words.
+
+    It is empty if the answer named neither of the two.
+    """
+    match = _RANKED_ONE.fullmatch(text)
+    if match is None or not focus.compared:
+        return None
+    rank = match["rank"].lower()
+    asked = next((word for word in re.findall(r"[a-z]+", focus.question.lower()) if word in _RANK), "")
+    if not asked or rank not in _RANK:
+        return None
+    if focus.number == 2:
+        return ""
+    if _RANK[rank] == _RANK[asked]:
+        return focus.compared[0]
+    return focus.compared[1] if _RANK[rank] == _RANK[asked] ^ 1 else None
 
 
 def neighbour_of(text: str, current: str) -> str:

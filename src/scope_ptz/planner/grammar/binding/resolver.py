@@ -159,6 +159,10 @@ class Resolver(CountingSteps):
             return self._zoomto(ast.ZoomTo(ast.Thing(one[0], definite=True)))  # "show me the first one" of the workers just listed
         if step.how == "bare" and not self.conversation and _NUMBERED_ONE.fullmatch(ref.name):
             raise UnresolvedError("Which one do you mean? Please name a preset, or say what I shall do.")
+        if step.how == "go" and ref.number is not None and _NUMBERED_ONE.search(ref.name) and self._has_just_looked():
+            raise UnresolvedError(
+                f"Which one do you mean by '{_NUMBERED_ONE.findall(ref.name)[-1]}'? Please name the preset or the thing."
+            )
         if ref.is_first_view and self._can_return_to_start():
             return [ast.Back(to_start=True)]
         preset = self.find_place(ref) if self.presets is not None or step.how in {"go", "use"} or ref.explicit else None
@@ -172,6 +176,12 @@ class Resolver(CountingSteps):
         if step.how == "bare" and preset is None and not ref.explicit:
             raise UnresolvedError(f"I did not understand '{ref.name}'. Please say it another way, or name one of the presets.")
         return [ast.GoToPreset(self.place(ref))]
+
+    def _has_just_looked(self) -> bool:
+        """Return whether the camera has looked at things since it went to a preset, so that "the first one" may be one of them."""
+        calls = [o.call.name for turn in self.conversation for exchange in turn.exchanges for o in exchange.outcomes]
+        latest = next((name for name in reversed(calls) if name != "adjust_ptz"), "")
+        return latest in {"zoom_to_object", "track_object"}
 
     def _gothere(self, step: ast.GoThere) -> Sequence[ast.Step]:
         if self.has_compared and step.wanted == self.compared_for:
@@ -265,7 +275,8 @@ class Resolver(CountingSteps):
         if self.antecedent or not self.foci:
             return self.antecedent if names_several(self.antecedent) else ""
         last = self.foci[-1]
-        return last.description if names_several(last.description) else ""
+        described = last.whole if last.whole and last.number == 0 else last.description  # all cars, if none is charging
+        return described if names_several(described) else ""
 
     def _referent_of_ones(self, pronoun: str) -> str:  # noqa: ARG002 - has the signature of a referent
         last = self.foci[-1] if self.foci and not self.antecedent else None

@@ -8,10 +8,19 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from scope_ptz.english.grammar.numbers import NUMBER_WORDS
+from scope_ptz.english.grammar.questions import question_tree as tree
+from scope_ptz.english.grammar.questions.question_parser import parse_question
 from scope_ptz.planner.grammar import instruction_tree as ast
 from scope_ptz.planner.grammar.answerable import answerable_questions, is_whole_question
 from scope_ptz.planner.grammar.binding.earlier_moves.continuations import NOTHING_DONE, continuation_of
-from scope_ptz.planner.grammar.binding.followups import followup_of, question_about_side, question_about_topic
+from scope_ptz.planner.grammar.binding.focus import foci_of
+from scope_ptz.planner.grammar.binding.followups import (
+    followup_of,
+    is_return_to_centre,
+    question_about_side,
+    question_about_topic,
+    question_in_other_direction,
+)
 from scope_ptz.planner.grammar.binding.names import UnresolvedError
 from scope_ptz.planner.grammar.binding.offtopic import REFUSAL, is_harmful
 from scope_ptz.planner.grammar.binding.question_text import is_request_for_total, lacks_noun
@@ -56,6 +65,9 @@ _NO_CLOSE_UP = re.compile(r"\b(?:without (?:moving|zooming)|(?:don['’]?t|do no
 
 _IMPOSSIBLE = "I cannot"
 """The beginning of the questions about requests that were understood but cannot be carried out."""
+
+_WHICH_CENTRE = 'Where is the centre? Please say "go home", or "point at 0 degrees" to pan back to 0.'
+"""The question about "back to centre" in a conversation, which may be the home view, the straight-ahead view or an earlier one."""
 
 _NO = re.compile(r"(?:no|nope|nah|no,? thanks|no,? thank you|no,? it['’]s fine|nothing)[.!]*", re.IGNORECASE)
 
@@ -102,6 +114,8 @@ def understand(instruction: str, presets: Sequence[str] | None, conversation: Se
     said = continuation.text
     if not conversation and lacks_noun(said):
         return Understanding(clarification="How many of what? Please name the things to count.")
+    if conversation and is_return_to_centre(said):
+        return Understanding(clarification=_WHICH_CENTRE)
     understanding = _read(said, preset_names, conversation)
     if understanding.steps and continuation.corrects:
         return Understanding((ast.Instead(understanding.steps),))
@@ -169,6 +183,8 @@ def _read(said: str, preset_names: tuple[str, ...] | None, conversation: Sequenc
             steps = (ast.Count((ast.Thing(counted),)),) if counted else (ast.Total(()),)
         if about_side := question_about_side(said, preset_names or ()):
             steps = about_side
+        if in_other_direction := _question_in_other_direction(said, preset_names or (), conversation):
+            steps = in_other_direction
         if conversation and steps and all(isinstance(step, ast.Report) for step in steps):
             steps = followup_of(said, preset_names or ()) or steps  # "look at both" reports no calculation
         if steps is None and conversation:
@@ -196,6 +212,17 @@ def _read(said: str, preset_names: tuple[str, ...] | None, conversation: Sequenc
     if question:
         return Understanding(clarification=question)
     return Understanding(bound)
+
+
+def _question_in_other_direction(
+    said: str, presets: tuple[str, ...], conversation: Sequence[PastTurn]
+) -> tuple[ast.Step, ...] | None:
+    """Return the step of "and to the right?" directly after "what is to the left of the van?"; None for other texts."""
+    done = [turn for turn in conversation if any(o.error is None for exchange in turn.exchanges for o in exchange.outcomes)]
+    asked = [parse_question(focus.question) for focus in foci_of(done[-1:])[-1:] if focus.question]
+    if not asked or not isinstance(asked[0], tree.Describe) or not any(isinstance(test, tree.Relation) for test in asked[0].tests):
+        return None
+    return question_in_other_direction(said, presets)
 
 
 def _without_repeated_visits(steps: Sequence[ast.Step]) -> tuple[ast.Step, ...]:

@@ -103,10 +103,12 @@ class CloseUpSteps(RunState):
             if result is not None:
                 hint = _RETURN_FIRST if self.wider_view is not None and not self.may_go_closer else ""
                 has_gone_back = self.notes[-1:] == [_WENT_BACK]
-                stays = "is back at the view before" if has_gone_back else "stayed where it was"
+                stays = ", so the camera is back at the view before" if has_gone_back else ", so the camera stayed where it was"
+                if self.notes and self.notes[-1].startswith(motion.WENT_BACK_TO):
+                    stays = ""  # the camera has moved, and the answer says where it is
                 if has_gone_back:
                     self.notes.pop()
-                self._note(f"I could not find the {text} {views}, so the camera {stays}{hint}")
+                self._note(f"I could not find the {text} {views}{stays}{hint}")
             return
         self._note_close_up(step.thing, start, result)
 

@@ -107,6 +107,19 @@ def winner_text(parts: Sequence[ast.Tally], counts: Sequence[int], first: ast.Co
     return f"{hedge}there are {first} {winners[0]} than any of the others"
 
 
+def here_or_there_text(parts: Sequence[ast.Tally], counts: Sequence[int], way: ast.Comparison) -> str:
+    """Return where there are more, or fewer, of the same objects: "There are more vans here than at docks"."""
+    here, there = counts
+    place = parts[1].place.name if parts[1].place is not None else "there"
+    things = phrases.noun(parts[0].thing.text, 2)
+    if here == there:
+        return f"There are as many {things} here as at {place}" if are_complete(counts) else _CANNOT_TELL_WHICH
+    hedge = "" if are_complete(counts) else "as far as I can see, "
+    is_here = (here > there) == (way == "more")
+    where = f"here than at {place}" if is_here else f"at {place} than here"
+    return f"{hedge}there are {way} {things} {where}"
+
+
 _CANNOT_TELL_WHICH = "I cannot tell which, because there may be more that are too small or hidden"
 
 

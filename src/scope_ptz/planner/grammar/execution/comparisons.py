@@ -111,6 +111,9 @@ class ComparisonSteps(ConditionEvaluation):
             self._note(f"{'Yes' if met else 'No'}: {seen}")
             return
         self._note(seen)
+        if step.second_place is not None:
+            self._note(sentences.here_or_there_text(parts, (first, second), step.comparison))
+            return
         greater, lesser = parts if first >= second else reversed(parts)
         numbers = (first, second) if first >= second else (second, first)
         self._note(sentences.difference_text(greater, lesser, numbers))

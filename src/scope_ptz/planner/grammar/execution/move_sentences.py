@@ -10,6 +10,9 @@ from scope_ptz.geometry import Pose, wrap_pan_deg
 from scope_ptz.planner.grammar.execution.answer_sentences import count_word, number
 from scope_ptz.planner.grammar.execution.camera_history import ZOOM_TOLERANCE
 
+WENT_BACK_TO = "I went back:"
+"""How the report of a return begins."""
+
 
 def move_text(arguments: Mapping[str, Any]) -> str:
     """Describe a relative move in the past tense: "panned right 20 degrees and tilted down 10 degrees"."""
@@ -58,7 +61,9 @@ def report_of_return(place: str, shortfall: str = "") -> str:
         place: Where the camera is now: a preset, the home view or a pose, in words.
         shortfall: Why the camera did not get all the way back, as ``shortfall_text`` returns it; empty if it did.
     """
-    return f"I went back{shortfall}; the camera is now at {place}" if shortfall else f"I went back: the camera is at {place} again"
+    return (
+        f"I went back{shortfall}; the camera is now at {place}" if shortfall else f"{WENT_BACK_TO} the camera is at {place} again"
+    )
 
 
 def _limit_text(axis: str, arguments: Mapping[str, Any]) -> str:

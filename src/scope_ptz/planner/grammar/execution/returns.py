@@ -123,7 +123,10 @@ class ReturnSteps(RunState):
             yield from self._move_instead(step.steps[0], start.pose)
         else:
             if not start.is_at(self._here()):
+                wider = self.wider_view
                 yield from self._turn_back(start.pose)
+                is_close_up = wider is not None and not is_same_pose(wider, start.pose)
+                self.wider_view = wider if is_close_up else None  # the corrected close-up may have followed another one
             yield from self._run_steps(step.steps)
 
     def _move_instead(self, move: ast.Move, start: Pose) -> CallGenerator:

@@ -12,6 +12,7 @@ from scope_ptz.planner.grammar.parsing.parts.clause import MARKERS, Clause, NotU
 from scope_ptz.planner.grammar.parsing.reader import Reader
 from scope_ptz.planner.grammar.parsing.rewording.contractions import with_contractions
 from scope_ptz.planner.grammar.parsing.rewording.contrasts import without_denials
+from scope_ptz.planner.grammar.parsing.rewording.corrected_ones import with_noun_for_corrected_one
 from scope_ptz.planner.grammar.parsing.rewording.named_corrections import with_corrections_in_form
 from scope_ptz.planner.grammar.parsing.rewording.phrases import reworded
 from scope_ptz.planner.grammar.parsing.rewording.plain_text import plainer, without_asides
@@ -52,7 +53,7 @@ def parse(text: str, presets: tuple[str, ...] = ()) -> Parsed:
     """Parse an instruction. This never raises an exception."""
     if len(text) > MAX_CHARS:
         return Parsed(text, None)
-    text = with_corrections_in_form(text, presets)
+    text = with_noun_for_corrected_one(with_corrections_in_form(text, presets), presets)
     said = without_asides(text, presets)
     plain = plainer(said, presets)
     for wording in (relayed(plain, presets), plain if plain != text else None):

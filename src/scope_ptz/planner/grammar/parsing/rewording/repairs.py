@@ -115,7 +115,7 @@ def _repaired_at(lexemes: tuple[Lexeme, ...], i: int) -> tuple[Lexeme, ...] | No
     if lexemes[i].word == "wrong":
         return None  # "if the points are wrong go home" has no pause before "wrong"
     before, after = lexemes[:i], lexemes[i + editing.size :]
-    old, new = before[_last_clause(before) :], after[: _first_end(after)]
+    old, new = before[last_clause(before) :], after[: first_end(after)]
     if not old or not new:
         return None
     changed = _with_preset(old, new) or _with_direction_reversed(old, new) or _with_amount(old, new)
@@ -131,12 +131,12 @@ def _repaired_at(lexemes: tuple[Lexeme, ...], i: int) -> tuple[Lexeme, ...] | No
     return after if editing.has("retraction") and _replaces_all(before, after) else None
 
 
-def _last_clause(lexemes: Sequence[Lexeme]) -> int:
+def last_clause(lexemes: Sequence[Lexeme]) -> int:
     """Return the position at which the last clause begins."""
     return max((i + 1 for i, x in enumerate(lexemes) if x.has(*ENDS)), default=0)
 
 
-def _first_end(lexemes: Sequence[Lexeme]) -> int:
+def first_end(lexemes: Sequence[Lexeme]) -> int:
     """Return the number of lexemes before the first one that ends a clause."""
     return next((i for i, x in enumerate(lexemes) if x.has(*ENDS)), len(lexemes))
 
