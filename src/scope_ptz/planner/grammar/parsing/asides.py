@@ -13,7 +13,7 @@ from scope_ptz.planner.grammar.parsing.parts.clause import DIRECTIONS, VERBS, Cl
 from scope_ptz.planner.grammar.parsing.parts.courtesy import is_polite
 from scope_ptz.planner.grammar.parsing.parts.noun_phrases import thing_of
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start, search
-from scope_ptz.planner.grammar.parsing.parts.statements import is_comment, is_statement, without_future_time
+from scope_ptz.planner.grammar.parsing.parts.statements import is_comment, is_past_event, is_statement, without_future_time
 from scope_ptz.planner.grammar.parsing.segments.clause_starts import STATEMENT
 
 _WISH = (
@@ -200,8 +200,8 @@ def elliptical_condition(source: Source, clause: Clause, after: Clause | None) -
             return None  # "see a van anywhere? Check all around"
         thing = thing_of(source, match["thing"]) if match["thing"] else Thing("people")
         return Seen(thing) if thing is not None and thing.text else None
-    if lexemes[0].has("SOMEONE") and len(lexemes) > 2 and lexemes[1].has("TELL-ED", "TELL-S"):
-        return None  # "somebody said they saw a fox"
+    if lexemes[0].has("SOMEONE") and ((len(lexemes) > 2 and lexemes[1].has("TELL-ED", "TELL-S")) or is_past_event(lexemes)):
+        return None  # "somebody said they saw a fox", "someone rang"
     if lexemes[0].has("SOMEONE", "NOONE") or (lexemes[0].word == "no" and clause.link != ","):
         return condition_of(source, lexemes)
     return None

@@ -17,7 +17,9 @@ from scope_ptz.planner.grammar.parsing.remark_detection.remark_forms import (
     NOUN_SUBJECT,
     REFUSAL,
     REPORT,
+    RETURN,
     SUBJECT,
+    gives_reason_for_return,
 )
 from scope_ptz.planner.grammar.parsing.remark_detection.surrounding_remarks import (
     AMOUNT,
@@ -59,8 +61,11 @@ _EXTENT = re.compile(
 """Words which show that a phrase with "for" or "as" says how long or how far to go, so that it must be kept."""
 
 UNFINISHED = re.compile(
-    r"\b(?:until|till|til|if|when|once|unless|while|as|that|which|who|where|what|whether|how|and|or|but|to|the|an?|of|for|at|on|in|by|with"
-    r"|(?:how|what|who|where)['’]s|than|like|before|after|whatever|because|so|is|are|was|were|not|only|just|every|each|time)\W*$",
+    r"\b(?:until|till|til|if|when|once|unless|while|as|that|which|who|where|what|whether|how|and|or|but|to|the|an?|of|for|at|on|by|with"
+    r"|(?<!zoom )(?<!right )(?<!way )(?<!further )(?<!closer )(?<!bit )in"
+    r"|(?:how|what|who|where)['’]s|than|like|before|after|whatever|because|so|is|are"
+    r"|(?<!where we )(?<!where i )(?<!where it )(?:was|were)"
+    r"|not|only|just|every|each|time)\W*$",
     re.IGNORECASE,
 )
 """The end of a text that is incomplete without the words after it: "pan right until" before "something moves"."""
@@ -89,7 +94,7 @@ def shorter_versions(text: str, presets: tuple[str, ...]) -> Iterator[str]:
     versions = sorted(((begin, end) for begin in begins for end in ends if begin < end), key=lambda cut: cut[0] - cut[1])
     for begin, end in versions[:_MAX_VERSIONS]:
         kept = text[begin:end]
-        if kept != text and len(kept.split()) >= _MIN_WORDS:
+        if kept != text and (len(kept.split()) >= _MIN_WORDS or RETURN.fullmatch(kept)):
             yield kept + ("?" if text[end : end + 1] == "?" else "")
 
 
@@ -109,7 +114,8 @@ def _ends(text: str, presets: tuple[str, ...]) -> Iterator[int]:
     """Yield each index at which a text may end because only remarks follow."""
     for match in _BOUNDARY.finditer(text):
         said, tail = text[: match.start()], text[match.end() :].rstrip(" .!?")
-        if UNFINISHED.search(said) is None and is_remark(tail, presets) and not is_amount(said, tail):
+        is_left_out = is_remark(tail, presets) or gives_reason_for_return(said, tail)
+        if UNFINISHED.search(said) is None and is_left_out and not is_amount(said, tail):
             yield match.start()
     for match in _PURPOSE.finditer(text):
         tail = text[match.end() :]

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from scope_ptz.planner.grammar.parsing.remark_detection.features import statement_features_of
 from scope_ptz.planner.grammar.parsing.remark_detection.model import withdrawal_model
+from scope_ptz.planner.grammar.parsing.remark_detection.remark_forms import gives_reason_for_return
 from scope_ptz.planner.grammar.parsing.remark_detection.segments import segments_of
 from scope_ptz.planner.grammar.parsing.remark_detection.shorter_versions import MAX_SHORTENED_CHARS
 
@@ -31,5 +32,7 @@ def withdrawing_segments(text: str, presets: tuple[str, ...]) -> Iterator[tuple[
     likeliest = sorted((index for index, value in enumerate(log_odds) if value > _MIN_LOG_ODDS), key=lambda index: -log_odds[index])
     for index in likeliest[:_MAX_SEGMENTS]:
         segment = segments[index]
+        if gives_reason_for_return(text[: segment.start], segment.text):
+            continue
         following = segments[index + 1].start if index + 1 < len(segments) else len(text)
         yield segment.text, (text[: segment.start] + text[following:]).strip(" ,;:-–—")
