@@ -26,6 +26,7 @@ from scope_ptz.planner.grammar.binding import understand
 from scope_ptz.planner.grammar.parsing.remark_detection.features import statement_features_of
 from scope_ptz.planner.grammar.parsing.remark_detection.model import WITHDRAWAL_WEIGHTS_FILE, withdrawal_model
 from scope_ptz.planner.grammar.parsing.remark_detection.segments import segments_of
+from scope_ptz.planner.grammar.parsing.remark_detection.withdrawing_segments import is_command
 from scope_ptz.planner.grammar.parsing.rewording.plain_text import written_out
 
 _MAX_SEGMENTS = 8  # instructions with more segments are not used, because each segment is left out in turn
@@ -69,6 +70,8 @@ def _harmless_segments(row: Row) -> Iterator[Example]:
     if verdict(row, made) != "right":
         return
     for index, segment in enumerate(segments):
+        if is_command(segment.text, row.presets):
+            continue
         following = segments[index + 1].start if index + 1 < len(segments) else len(text)
         shorter = planned(replace(row, instruction=text[: segment.start] + text[following:]))
         if shorter.understood and shorter.calls == made.calls:

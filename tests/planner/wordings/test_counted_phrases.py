@@ -60,7 +60,7 @@ def test_a_posture_is_left_out_only_if_it_adds_nothing(instruction: str, things:
 
 @pytest.mark.parametrize(
     "question",
-    ["How many gates did they leave open?", "How many words can you make out?", "How many cars does the driver see?"],
+    ["How many gates did they leave behind?", "How many words can you make out?", "How many cars does the driver see?"],
 )
 def test_what_somebody_did_or_can_read_is_asked(question: str) -> None:
     assert calls(question) == f"query_answer({question}, current)"

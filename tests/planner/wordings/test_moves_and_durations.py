@@ -125,3 +125,67 @@ def test_multiples_of_the_size_are_relative_to_the_current_zoom(instruction: str
 )
 def test_how_long_to_follow(instruction: str, description: str, duration_s: int) -> None:
     assert calls(instruction) == f"track_object(description={description}, duration_s={duration_s})"
+
+
+@pytest.mark.parametrize(
+    ("instruction", "expected"),
+    [
+        ("look down and to the left, six each", "adjust_ptz(tilt_deg=-6, pan_deg=-6)"),
+        ("Pan right and tilt up, 8 degrees each", "adjust_ptz(pan_deg=8, tilt_deg=8)"),
+        ("turn left, then look up, 12 each", "adjust_ptz(pan_deg=-12); adjust_ptz(tilt_deg=12)"),
+        ("4 degree steps: left, left, up", "adjust_ptz(pan_deg=-4); adjust_ptz(pan_deg=-4); adjust_ptz(tilt_deg=4)"),
+        ("In steps of 7 degrees: tilt down, pan right", "adjust_ptz(tilt_deg=-7); adjust_ptz(pan_deg=7)"),
+        ("20 degrees, direction left. Pan.", "adjust_ptz(pan_deg=-20)"),
+        ("A rightward pan of 17 degrees, please", "adjust_ptz(pan_deg=17)"),
+        ("an upward tilt of 5 degrees", "adjust_ptz(tilt_deg=5)"),
+        ("Aim at minus 30 degrees pan and 8 degrees below the horizon", "adjust_ptz(pan_deg=-30, tilt_deg=-8)"),
+        ("Move to 25 degrees pan and minus 5 degrees tilt", "adjust_ptz(pan_deg=25, tilt_deg=-5)"),
+        ("set the pan to 35 degrees left of centre", "adjust_ptz(pan_deg=-35)"),
+        ("Hard left, all the way to the end.", "adjust_ptz(pan_deg=-360)"),
+        ("tilt up, all the way to the stop", "adjust_ptz(tilt_deg=90)"),
+        ("make it turn right twenty", "adjust_ptz(pan_deg=20)"),
+        ("Could you spin the camera right around so that I can see the car park behind it?", "adjust_ptz(pan_deg=180)"),
+    ],
+)
+def test_where_angles_and_directions_stand(instruction: str, expected: str) -> None:
+    assert calls(instruction) == expected
+
+
+@pytest.mark.parametrize("instruction", ["a leftward tilt of 5", "Set the pan to 40 degrees left of 10"])
+def test_angles_that_do_not_fit_are_asked_about(instruction: str) -> None:
+    assert not plan(instruction, PRESETS).understood
+
+
+@pytest.mark.parametrize(
+    "instruction",
+    [
+        "left a lot bruv", "pan left a lot my man", "pan left a lot if you can, cheers", "pleeease pan leffft a lot",
+        "Don't recall any preset, just pan left a lot",
+    ],
+)  # fmt: skip
+def test_addresses_stretched_words_and_courtesy_change_nothing(instruction: str) -> None:
+    assert calls(instruction) == calls("pan left a lot")
+
+
+def test_people_who_are_named_are_no_addresses() -> None:
+    assert calls("zoom in on the lads") == "zoom_to_object(description=lads)"
+    assert calls("zoom in on the left man") == "zoom_to_object(description=left man)"
+
+
+@pytest.mark.parametrize(
+    ("instruction", "expected"),
+    [
+        ("Preset recall: dock.", "go_to_preset(name=dock)"),
+        ("Preset list first, then recall gate, then image.", "get_presets(); go_to_preset(name=gate); take_image()"),
+        ("Starting from the home position, pan left 12", "go_home(); adjust_ptz(pan_deg=-12)"),
+        ("Duration 35 seconds. Follow the tractor.", "track_object(description=tractor, duration_s=35)"),
+        ("Tracking check, 20 s, the red forklift.", "track_object(description=red forklift, duration_s=20)"),
+        ("keep the cam on the skid steer for like two minutes", "track_object(description=skid steer, duration_s=120)"),
+        (
+            "follow the lad w the watering can, had words with him last nite",
+            "track_object(description=lad with the watering can, duration_s=10)",
+        ),
+    ],
+)
+def test_terse_orders(instruction: str, expected: str) -> None:
+    assert calls(instruction) == expected

@@ -121,3 +121,23 @@ def test_amounts_refer_to_the_turn_before(instruction: str, expected: list[Any])
 )
 def test_doubtful_moves_are_asked_about(instruction: str) -> None:
     assert calls(instruction) is None
+
+
+@pytest.mark.parametrize(
+    ("instruction", "expected"),
+    [
+        ("Pan right eighteen degrees. On second thoughts, make that eleven.", [pan(11)]),
+        ("Pan left 14. Wait, wrong sign: pan right 14.", [pan(14)]),
+        ("Tilt down 9. My mistake, up 9.", [tilt(9)]),
+        ("pan left 30, wait no, make that 35", [pan(-35)]),
+    ],
+)
+def test_words_that_introduce_a_correction_do_not_take_it_back(instruction: str, expected: list[Any]) -> None:
+    assert calls(instruction) == expected
+
+
+@pytest.mark.parametrize(
+    "instruction", ["Pan right eighteen degrees. On second thoughts.", "Pan left 14, then tilt up 3. Wrong sign."]
+)
+def test_the_same_words_at_the_end_are_asked_about(instruction: str) -> None:
+    assert calls(instruction) is None

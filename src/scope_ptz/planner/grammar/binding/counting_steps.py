@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from abc import abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -15,6 +16,9 @@ from scope_ptz.planner.grammar.binding.names import UnresolvedError
 from scope_ptz.planner.grammar.binding.preset_matching import match_exactly
 from scope_ptz.planner.grammar.execution.comparison_sentences import presets_of_rank
 
+_VACANT = re.compile(r"\b(?:empty|free|vacant|unoccupied|spare|available|spaces?|no|without)\b", re.IGNORECASE)
+"""Words with which the preset that shows more things is not the busier one: "which has more empty tables?"."""
+
 
 @dataclass(slots=True)
 class CountingSteps(FollowUpSteps):
@@ -22,10 +26,12 @@ class CountingSteps(FollowUpSteps):
 
     Attributes:
         has_compared: Whether an earlier step compares presets.
+        compared_for: Whether the winner of that comparison has more or fewer things; empty if it may be neither.
         has_counted: Whether an earlier step counts something.
     """
 
     has_compared: bool = False
+    compared_for: str = ""
     has_counted: bool = False
 
     @abstractmethod
@@ -98,6 +104,8 @@ class CountingSteps(FollowUpSteps):
     def _whichpreset(self, step: ast.WhichPreset) -> Sequence[ast.Step]:
         self.has_compared = True
         thing = self.thing(step.thing)
+        is_busy = not _VACANT.search(thing.text)
+        self.compared_for = step.comparison if is_busy and step.rank == 1 else ""
         counted = [count for count in self.earlier_counts if count.description == thing.text]
         if step.of_two and not step.places and counted and (two := last_two_presets(counted)) is not None:
             return [replace(step, thing=thing, places=tuple(ast.PresetRef(name, explicit=True) for name in two))]
@@ -110,7 +118,7 @@ class CountingSteps(FollowUpSteps):
         return [replace(step, thing=thing, places=self._places(step.places))]
 
     def _firstwith(self, step: ast.FirstWith) -> Sequence[ast.Step]:
-        self.has_compared = True
+        self.has_compared, self.compared_for = True, ""
         places = self._places(step.places)
         return [replace(step, thing=self.thing(step.thing), places=places[::-1] if step.last else places)]
 

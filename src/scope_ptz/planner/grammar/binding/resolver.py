@@ -172,6 +172,8 @@ class Resolver(CountingSteps):
         return [ast.GoToPreset(self.place(ref))]
 
     def _gothere(self, step: ast.GoThere) -> Sequence[ast.Step]:
+        if self.has_compared and step.wanted == self.compared_for:
+            return [replace(step, wanted="")]
         if step.wanted in {"more", "fewer"}:
             return [ast.GoToPreset(ast.PresetRef(self._preset_with(step.wanted), explicit=True))]
         if self.has_compared:

@@ -117,15 +117,21 @@ def understand(instruction: str, presets: Sequence[str] | None, conversation: Se
 def _unless_taken_back(
     said: str, understanding: Understanding, preset_names: tuple[str, ...] | None, conversation: Sequence[PastTurn]
 ) -> Understanding:
-    """Return an understanding, or a question if it moves the camera although a statement probably takes the command back."""
+    """Return an understanding, or a question if it moves the camera although a statement probably takes the command back.
+
+    Words that introduce a correction ("tilt up 15. On second thoughts, make that 12") do not: that command is replaced.
+    """
     if not evidence_of(understanding.steps).moves:
         return understanding
-    for statement, rest in withdrawing_segments(written_out(said), preset_names or ()):
-        other = _read(rest, preset_names, conversation)
+    for segment in withdrawing_segments(written_out(said), preset_names or ()):
+        other = _read(segment.rest, preset_names, conversation)
         if not other.steps:
-            other = _read_without_remarks(rest, other, preset_names, conversation)
-        if other.steps == understanding.steps:
-            return Understanding(clarification=f'You said "{statement}", so I did nothing. Please say only what I should do.')
+            other = _read_without_remarks(segment.rest, other, preset_names, conversation)
+        if other.steps != understanding.steps:
+            continue
+        earlier = next((steps for text in segment.before if (steps := _read(text, preset_names, conversation).steps)), ())
+        if not earlier or understanding.steps[: len(earlier)] == earlier:
+            return Understanding(clarification=f'You said "{segment.text}", so I did nothing. Please say only what I should do.')
     return understanding
 
 

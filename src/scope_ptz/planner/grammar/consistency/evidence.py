@@ -27,6 +27,7 @@ class Evidence:
         axes: The axes that move: "pan", "tilt" and "zoom".
         texts: Descriptions and questions; the value is True for a description.
         forbids_moving: Whether the instruction says not to move.
+        looks_all_around: Whether a step looks at the whole scene.
     """
 
     numbers: list[float] = field(default_factory=list)
@@ -38,6 +39,7 @@ class Evidence:
     axes: set[str] = field(default_factory=set)
     texts: dict[str, bool] = field(default_factory=dict)
     forbids_moving: bool = False
+    looks_all_around: bool = False
 
     def has(self, *kinds: type[Any]) -> bool:
         """Return whether the plan has a step of one of the types."""
@@ -54,6 +56,7 @@ def evidence_of(steps: Sequence[ast.Step]) -> Evidence:
     found = Evidence()
     for node in _nodes(steps):
         found.steps.add(type(node))
+        found.looks_all_around |= isinstance(node, ast.Sweep) or getattr(node, "view", None) == "full"
         for name in _TEXTS.get(type(node), ()):
             if text := getattr(node, name):
                 found.texts[text] = isinstance(node, ast.Thing)

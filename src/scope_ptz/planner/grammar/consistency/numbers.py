@@ -149,7 +149,9 @@ def _plan_values(stated: StatedNumber, evidence: Evidence) -> list[float]:
 
 def _is_product(stated: StatedNumber, evidence: Evidence) -> bool:
     """Return whether the plan reaches a stated number in steps: 90 degrees as three turns of 30."""
-    if stated.value == len(evidence.presets) or (stated.value in {180, 360} and evidence.has(ast.Sweep)):
+    if stated.value == len(evidence.presets) or (stated.value == 180 and evidence.has(ast.Sweep)):
+        return True
+    if stated.value == 360 and evidence.looks_all_around:
         return True
     pairs = combinations(evidence.numbers, 2)
     return any(abs(a * b - stated.value) <= _TOLERANCE for a, b in pairs)

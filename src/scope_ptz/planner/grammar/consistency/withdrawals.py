@@ -14,6 +14,7 @@ _LAST_WORDS = (
     r"(?:let us |let['’]s |we will |we['’]ll )?stay (?:here|where we are)(?: for now)?",
     r"(?:the )?(?:wrong way|opposite(?: direction)?|other direction)",
     r"which is forbidden",
+    r"(?:we|you) (?:don['’]t|do not) (?:have|need) to",
     r"on my (?:mark|signal)",
     r"(?:he|she|they) (?:told me|shouted|said)",
 )

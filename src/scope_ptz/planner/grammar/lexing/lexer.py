@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
+from scope_ptz.english.grammar.lexicon import lexicon
 from scope_ptz.english.grammar.numbers import NUMBER_WORDS, read_number
 from scope_ptz.english.grammar.parts_of_speech import parts_of_speech
 from scope_ptz.english.grammar.tokens import Token, tokenise
@@ -234,11 +235,19 @@ def _with_short_names(lexemes: list[Lexeme], presets: tuple[str, ...]) -> list[L
             continue
         before = [y for y in lexemes[max(0, i - 2) : i] if y.word != "the"]
         is_place = bool(before) and (before[-1].word in _AT_PLACE and (i < 2 or lexemes[i - 1].word in {"the", before[-1].word}))
-        is_place = is_place or _is_listed(lexemes, i)
+        is_place = is_place or _is_listed(lexemes, i) or _is_where_things_are_counted(lexemes, i)
         after = lexemes[i + 1] if i + 1 < len(lexemes) else None
         if is_place and (after is None or not (after.has("FREE", "PRESET", "NUM") or after.word in {"of", "'s"})):
             out[i] = Lexeme(x.word, x.start, x.end, frozenset({"PRESET"}), 0.0, short[x.word])
     return out
+
+
+def _is_where_things_are_counted(lexemes: Sequence[Lexeme], i: int) -> bool:
+    """Return whether a position ends "how many taxis are there on the rank?", and the word names nothing that perception knows."""
+    words = [x.word for x in lexemes[max(0, i - 2) : i]]
+    ends = i + 1 == len(lexemes) or lexemes[i + 1].has("STOP", "QUESTION")
+    is_counted = any(x.has("HOWMANY") for x in lexemes[: i - 2])
+    return words == ["on", "the"] and ends and is_counted and lexicon().concept(lexemes[i].word) is None
 
 
 def _is_listed(lexemes: Sequence[Lexeme], i: int) -> bool:

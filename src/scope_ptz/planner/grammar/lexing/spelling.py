@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from functools import lru_cache
 
 from scope_ptz.english import singular
@@ -17,6 +18,9 @@ _MIN_CHARS = 5  # in shorter words, only exchanged, doubled and missing letters 
 _MIN_SHORT_CHARS = 3
 _MIN_VOWEL_CHARS = 7  # in shorter words, another vowel often makes another word
 _VOWELS = frozenset("aeiou")
+_STRETCHED = re.compile(r"([a-z])\1{2,}")
+"""A letter that is written three times or more, which no English word has."""
+
 _MIN_NOUN_CHARS = 6  # shorter words that nobody knows may be names
 
 
@@ -52,6 +56,16 @@ def with_whole_ending(word: str) -> str:
     """Return "going" for "goin"; any other word unchanged."""
     is_shortened = word.endswith("in") and not (is_english(word) or parts_of_speech(word)) and verb_form(f"{word}g") == "participle"
     return f"{word}g" if is_shortened else word
+
+
+def without_stretched_letters(word: str) -> str:
+    """Return the word that was stretched for emphasis: "in" for "innn", "zoom" for "zooooom". Unknown words are unchanged."""
+    single, double = _STRETCHED.sub(r"\1", word), _STRETCHED.sub(r"\1\1", word)
+    return next((short for known in (_is_command_word, is_english) for short in (double, single) if known(short)), word)
+
+
+def _is_command_word(word: str) -> bool:
+    return word in known_words()
 
 
 @lru_cache(maxsize=4096)

@@ -199,7 +199,10 @@ class ClauseSequenceReader:
         first = clause.lexemes[0] if clause.lexemes else None
         slip = next((x for x in clause.lexemes if not x.has("FILLER", "COMMA") or x.word in _SLIPS), None)
         steps = tuple(with_calculation(clause.lexemes, step) for step in steps)
-        same = full_match(f"HOWMANY BE (?!LEFT|RIGHT) (?P<state>FREE|ADVERB|{'|'.join(GERUNDS)})", clause.lexemes)
+        same = full_match(
+            f"HOWMANY BE (just|only|simply)? (?!LEFT|RIGHT) (?P<state>FREE|ADVERB|{'|'.join(GERUNDS)}) (VISIBLE|FILLER)*",
+            clause.lexemes,
+        )
         if (
             same
             and isinstance(self.last_step, Count)
@@ -290,6 +293,8 @@ class ClauseSequenceReader:
             return (Ask(text_of(self.reader.source, clause.lexemes) + "?"),)  # "is this the gate?"
         if match_start("(FILLER)* (this|that|it|SELF) BE ", clause.lexemes):
             return (Unclear("Shall I go there?"),)  # "this is the gate"
+        if words[0].startswith("they_") and not any(x.has("PRESET") for x in clause.lexemes):
+            raise NotUnderstoodError(clause.lexemes)  # "count the bicycles, they need a separate ticket"
         if words[0] in {"what_about", "how_about"} and self.last_step is None:
             return (Unclear("What shall I look for there?"),)
         if words[-1] == "last" and self._peek() is not None:

@@ -26,6 +26,7 @@ from scope_ptz.planner.grammar.instruction_tree import (
     Move,
     Part,
     PresetRef,
+    Read,
     Repeat,
     Rescope,
     SameAt,
@@ -75,6 +76,9 @@ def _add_step(out: list[Step], link: str, step: Step) -> None:
     if isinstance(step, Move) and out and isinstance(out[-1], Move) and link not in {".", "then"} and _restates(out[-1], step):
         out.append(Unclear("Is that part of the same move, or another one? Please give each move its amount."))
         return
+    if out and isinstance(out[-1], Rescope) and isinstance(step, Count | Ask | Read) and step.view in (None, out[-1].view):
+        out[-1] = replace(step, view=out[-1].view)  # "full view. Count the vans."
+        return
     if _add_modifier(out, link, step):
         return
     last = out[-1] if out else None
@@ -102,8 +106,10 @@ def _add_modifier(out: list[Step], link: str, step: Step) -> bool:
             add_at_intervals(out, step)
         case Rescope() if link == "," and isinstance(last, Count | Ask) and last.view in (None, step.view):
             out[-1] = replace(last, view=step.view)  # "how many people are there, everywhere?"
+        case Rescope(view="current") if isinstance(last, Snap):
+            pass  # "a picture, current framing": a picture always shows the current view
         case Rescope():
-            out.append(replace(last, view=step.view) if isinstance(last, Count | Ask) else Unclear("What shall I look for there?"))
+            out.append(replace(last, view=step.view) if isinstance(last, Count | Ask) else step)  # the next step may be a count
         case CompareWithBefore():
             _compare_with_before(out, step)
         case DoAgain() if out:

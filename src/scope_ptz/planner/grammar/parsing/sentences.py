@@ -50,6 +50,7 @@ from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_s
 from scope_ptz.planner.grammar.parsing.parts.preset_refs import place_of
 from scope_ptz.planner.grammar.parsing.parts.scopes import split_trailing_place
 from scope_ptz.planner.grammar.parsing.parts.statements import is_event
+from scope_ptz.planner.grammar.parsing.purposes import purpose_of_move
 from scope_ptz.planner.grammar.parsing.remarks import adds_nothing
 from scope_ptz.planner.grammar.parsing.restatements import is_reason_for_zoom, repeats_previous_move
 from scope_ptz.planner.grammar.parsing.topics import topic_count, topic_step
@@ -156,10 +157,8 @@ class SentenceReader(TourReader):
             return [Linked(clause.link, self.last_step)]
         before = self.last_step
         steps = self._read(clause)
-        if clause.link == "," and is_reason_for_zoom(before, steps, clause):
-            return []
-        if self._lists_pictures(steps):
-            return []
+        if (aside := self._aside(clause, steps, before, after)) is not None:
+            return aside
         if (
             clause.link == ","
             and repeats_previous_move(before, steps)
@@ -219,6 +218,17 @@ class SentenceReader(TourReader):
         if after.marker == "REASON" and after.link in {"", ",", "and"}:
             self._take()
         return self._linked_steps(clause, steps)
+
+    def _aside(self, clause: Clause, steps: tuple[Step, ...], before: Step | None, after: Clause | None) -> list[Linked] | None:
+        """Return the steps of a clause that only belongs to a move beside it or lists pictures; None for other clauses."""
+        if (clause.link == "," and is_reason_for_zoom(before, steps, clause)) or self._lists_pictures(steps):
+            return []
+        if (purpose := purpose_of_move(self.reader, clause, steps, before, after)) is None:
+            return None
+        self.last_step = before or purpose
+        if isinstance(purpose, ZoomTo):
+            self._take()  # "let me see the digger, zoom in"
+        return [Linked(clause.link, purpose)]
 
     def _elliptical(self, clause: Clause, after: Clause | None, condition: Condition) -> list[Linked]:
         """Return the steps for a condition without "if" and its branches: "more than five vans at the gate? Then go home"."""

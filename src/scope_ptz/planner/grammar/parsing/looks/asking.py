@@ -23,6 +23,7 @@ from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_s
 from scope_ptz.planner.grammar.parsing.parts.preset_refs import places_of
 from scope_ptz.planner.grammar.parsing.parts.questions import is_question
 from scope_ptz.planner.grammar.parsing.parts.scopes import has_full_scope, split_trailing_place
+from scope_ptz.planner.grammar.parsing.parts.statements import is_statement
 
 if TYPE_CHECKING:
     from scope_ptz.tools.arguments import View
@@ -121,6 +122,14 @@ def _described(source: Source, lexemes: Sequence[Lexeme], view: View | None) -> 
     return Ask(f"describe {text_of(source, lexemes)}", view)
 
 
+def _is_followed_by_statement(lexemes: Sequence[Lexeme]) -> bool:
+    """Return whether a statement by somebody follows a comma."""
+    return any(
+        x.has("COMMA") and lexemes[i + 1 : i + 2] and lexemes[i + 1].has("SELF", "PRON") and is_statement(lexemes[i + 1 :])
+        for i, x in enumerate(lexemes)
+    )
+
+
 def _is_personal(lexemes: Sequence[Lexeme]) -> bool:
     """Return whether a question is about the planner itself: "how are you?", unlike "what do you see?"."""
     perception = ("SEE", "READ", "TELL", "COUNT", "SHOW", "AIM-ING", "AIM", "FIND", "SEE-ING", "TRACK", "SCAN")
@@ -179,6 +188,8 @@ def question_step(
             raise NotUnderstoodError(lexemes)  # "ask the sound guy whether he has had dinner"
         if lexemes[0].word in _SPEAKING and match_start("DET FREE{1,3} (that|to|not|about|whether|if) _", rest):
             raise NotUnderstoodError(lexemes)  # "tell the driver that he is late"
+        if rest[0].has("HOWMANY") and _is_followed_by_statement(rest):
+            raise NotUnderstoodError(lexemes)  # "tell me how many there are, I still have books to hand out"
         nobody = full_match("(that)? NOONE BE (?P<where>_*)", rest)
         if nobody is not None and not search(_NO_TOPIC, rest):
             return Ask(f"Is anyone {text_of(source, nobody['where']) or 'there'}?", scope)  # "make sure nobody is on the track"

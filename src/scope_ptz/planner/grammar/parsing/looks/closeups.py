@@ -152,11 +152,13 @@ def close_up_step(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
             r"PICTURE|tighter PICTURE|"
             r"PICTURE|WIDER|closer view|view) (PICTURE|VIEWNOUN|look)? (of|at|on) (?P<thing>_+)"
         ),
+        r"((CARRY|TAKE|SHOW|put) (me|us|SELF|FILLER)* (DET)?)? (eyes|eye) on (?P<thing>_+)",
         r"close_up (?P<thing>(FREE|DET) _*)",
         r"(CLOSER|tighter|in) (on|to) (?P<thing>_+)",
         r"(?P<thing>DET _+?) ((up|in) close|close up|CLOSER)",
         r"(ZOOM|ENLARGE|CARRY|TIGHTEN) (IN|CLOSER)* (GLUE|so_that|until|so|FILLER)* (?P<thing>(DET|it) _*?) (fills|takes up) _+",
-        r"(?P<thing>DET _*? FREE) (filling|(to)? fill) (DET|whole|entire)* (PICTURE|VIEWNOUN|frame|screen)",
+        r"(let|make|have|CARRY|TAKE)? (?P<thing>DET _*? FREE) (filling|(to)? fill) (DET|whole|entire)* "
+        r"(PICTURE|VIEWNOUN|frame|screen)",
         r"((TURN|SWING|CARRY) (LEFT|RIGHT|AROUND|CAMERA|it|FILLER)* to)? face (?P<thing>_+)",
         (
             r"(put|get|CARRY|have|keep|bring|TAKE|SHOW|AIM) (?P<thing>_+?) (in|into|to|at|on) (DET)? (centre|center|"
@@ -185,6 +187,8 @@ def close_up_step(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
             or any(x.has("SECONDS", "MINUTES") and lexemes[0].has("TRACK") for x in words)
         ):
             continue
+        if full_match(f"_+ for {SECONDS}", words):
+            continue  # "zoom in on the van for 20 seconds" may ask to follow it
         if full_match(r"(DET)? (left|right|LEFT|RIGHT|UP|DOWN|SIDE)+", words):
             return None
         if full_match(

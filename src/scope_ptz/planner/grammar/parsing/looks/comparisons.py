@@ -120,6 +120,10 @@ def _preset_comparison(source: Source, lexemes: Sequence[Lexeme]) -> Step | None
             rf"THAN)|(?P<way>MORETHAN|FEWERTHAN)) (at|in)* (?P<other>_+?)"
         ),
         (
+            rf"{_SKIP} BE (the)? (?P<thing>FREE{{1,3}} COUNT) ((at|in|on|from) (?P<one>_+?) ({_WAY} (than|THAN)|"
+            rf"(?P<way>MORETHAN|FEWERTHAN))|{_WAY} (at|in|on|from) (?P<one>_+?) (than|THAN)) (that)? (at|in|on)* (?P<other>_+?)"
+        ),
+        (
             rf"{_SKIP} COMPARE (DET)? (COUNTNOUN|count of|number of|HOWMANY)* (?P<thing>_+?) (SELF SEE|there BE|"
             rf"VISIBLE)? (at|in|on|from|between|for|COMMA|COLON|DASH) (?P<places>_+ (and|AND|with|to|THAN) _+)"
         ),

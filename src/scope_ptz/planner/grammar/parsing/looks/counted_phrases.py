@@ -32,8 +32,14 @@ _WHERE = "(?P<where>((?!UP|DOWN) (PREP|VISIBLE|NOW|FULL|there) _*)?)"
 _PLACED = f"(?P<thing>_+?) (HAVEV|DOV|do|have) {_SOMEBODY} (already|just)? ({_PLACING}) {_WHERE}"
 """Things, and who put them there: "traffic cones have they put out along the kerb"."""
 
+_LEFT_SO = f"(?P<thing>_+?) (HAVEV|DOV|do|have) {_SOMEBODY} (leave|left) (?P<state>(FREE|ADVERB){{1,2}})"
+"""Things, and the state that somebody left them in: "gates did they leave open"."""
+
 _OWNED = f"(?P<thing>_+?) (HAVEV {_SOMEBODY} got|(DOV|do) {_SOMEBODY} (HAVEV|have) (got)?|SELF HAVEV got) (?P<doing>_+)"
 """Things that we have, and what they do: "people have we got queueing outside the bakery"."""
+
+_PLACES = frozenset({"here", "there", "out", "in", "outside", "inside", "behind", "around", "about", "already", "over"})
+"""Words after "left" that say where things are, or that there are some, and not in which state."""
 
 _LOCATED = f"(?P<thing>_+?) BE (located|situated|positioned|present) {_WHERE}"
 _POSTURES = frozenset({"sitting", "standing", "lying"})
@@ -67,6 +73,9 @@ def _parts(lexemes: tuple[Lexeme, ...]) -> tuple[Sequence[Lexeme], Sequence[Lexe
     for pattern in (_OBSERVED, _PERCEIVED):
         if (seen := full_match(pattern, lexemes)) is not None:
             return seen["thing"], ()
+    if (left := full_match(_LEFT_SO, lexemes)) is not None and left["state"][0].word not in _PLACES:
+        verb = lexemes[len(left["thing"])]
+        return left["thing"], (verb.reworded("are", "BE"), *left["state"])
     if (placed := full_match(_PLACED, lexemes)) is not None:
         return placed["thing"], placed["where"]
     if (owned := full_match(_OWNED, lexemes)) is not None:

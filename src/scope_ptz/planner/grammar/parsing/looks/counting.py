@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from scope_ptz.english import is_plural
+from scope_ptz.english import is_plural, plural
 from scope_ptz.english.grammar.parts_of_speech import verb_form
 from scope_ptz.english.grammar.questions.recognition import looks_like_description
 from scope_ptz.planner.grammar.instruction_tree import (
@@ -111,7 +112,10 @@ def count_step(source: Source, lexemes: Sequence[Lexeme], view: View | None) -> 
     if match := full_match(
         rf"{SKIP} (do|TAKE|CARRY)? {ME} DET? (?P<thing>FREE{{1,2}}) (count|headcount) (of)? (VISIBLE|FILLER)*", lexemes
     ):
-        return _counted(source, match["thing"], view, lexemes, None)  # "people count"
+        counted = _counted(source, match["thing"], view, lexemes, None)
+        if isinstance(counted, Count):
+            return replace(counted, things=tuple(replace(thing, text=_several(thing.text)) for thing in counted.things))
+        return counted  # "people count", "vehicle count"
     if match := full_match(rf"{SKIP} (do|TAKE|CARRY)? DET? (headcount|head_count) (of|on|for)? (?P<rest>_+)", lexemes):
         if place_of(source, match["rest"]) is not None:
             return None  # "a headcount on the bridge" does not say what to count
@@ -127,6 +131,11 @@ def count_step(source: Source, lexemes: Sequence[Lexeme], view: View | None) -> 
             return None
         return _counted(source, match["rest"], view, lexemes, None)
     return None
+
+
+def _several(things: str) -> str:
+    """Return the plural of a description: "vehicles" for "vehicle"."""
+    return things if is_plural(things.lower().split()[-1]) else plural(things)
 
 
 def _is_made_out(things: Sequence[Lexeme], lexemes: Sequence[Lexeme]) -> bool:
@@ -215,7 +224,7 @@ def _count_with_predicate(source: Source, rest: Sequence[Lexeme], view: View | N
     match = full_match(
         (
             r"(?P<thing>_+?) (?P<verb>(can SELF SEE|do SELF SEE|BE there|BE VISIBLE|BE|HAVEV|do|does|DOV)) "
-            r"(?P<not>not)? (?P<main>have|wear|be)? (?P<rest>_+)"
+            r"(?P<not>not)? (?P<main>have|wear|be)? (got)? (?P<rest>_+)"
         ),
         rest,
     )

@@ -75,13 +75,17 @@ def picture_step(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
 
 def _pictured(source: Source, rest: Sequence[Lexeme], times: int, words: Sequence[Lexeme]) -> Step | None:
     """Return the pictures for the words after "take a picture"."""
+    if (single := full_match("(COMMA)? (just|only)? (the)? one (only|PICTURE|shot)? ((COMMA)+ (?P<rest>_+))?", rest)) is not None:
+        rest = single["rest"]  # "snapshot, one only, current framing"
     rest = _without_purpose(trimmed(rest, "FILLER", "COMMA", "AGAINWORD", "NOW", "INTURN", "DASH"))
     if (match := full_match("(?P<rest>_+?) as (it|they) (BE|looks) _*", rest)) is not None:
         rest = match["rest"]
     if full_match(
         (
             r"(of|from|at|with|on|OFNOUN|DET|current|present|whole|this|what|SELF|VIEWNOUN|AIM-ING|looking|at|BE|here|"
-            r"is|NOW|PICTURE|FULL|everything|CAMERA|it|there|that|can|SEE|SHOW|now|shown|VISIBLE|as|way|proof|"
+            r"is|NOW|PICTURE|FULL|everything|CAMERA|"
+            r"(this|current|present|its|your) (position|location|setting|settings|pose)|it|there|that|can|SEE|SHOW|now|shown|"
+            r"VISIBLE|as|way|proof|"
             r"evidence|MORE|AGAINWORD|again|ANOTHER|shown|present|for|us|me|records|file|report|too)*"
         ),
         rest,

@@ -74,6 +74,15 @@ def special_turn(lexemes: Sequence[Lexeme]) -> Step | None:
     ):
         return Move((Aim("pan", 0.0), Aim("tilt", 0.0)))
     if match := full_match(
+        rf"{glue} (to|at) (?P<number>NUM) DEG? (to)? (DET)? (?P<way>LEFT|RIGHT|left_of|right_of) (of)? (DET)? "
+        rf"(CENTREWORD|AHEAD|(?P<zero>NUM)) {glue}",
+        lexemes,
+    ):
+        if match.has("zero") and match["zero"][0].value != 0:
+            return Unclear("Is that the angle to turn to, or the angle to turn by?")
+        sign = 1 if match["way"][0].has("RIGHT") or match["way"][0].word == "right_of" else -1
+        return Move((Aim("pan", sign * abs(match["number"][0].value)),))  # "pan to 40 degrees left of centre"
+    if match := full_match(
         rf"{glue} (?P<number>NUM) DEG (?P<way>above|below|under|over|UP from|DOWN from) (DET)? HORIZON {glue}", lexemes
     ):
         sign = 1 if match["way"][0].word in {"above", "over"} or match["way"][0].has("UP") else -1

@@ -77,7 +77,7 @@ class Clause:
         marker: The class of the word that makes it subordinate, such as IF; "" for a main clause.
         lexemes: Its lexemes without the separator and the marker.
         is_question: Whether a question mark ends it.
-        opener: The lexeme of the marker.
+        opener: The lexeme of the marker, or the "so" or "then" before the clause.
     """
 
     link: str

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from scope_ptz.english import is_plural
-from scope_ptz.english.grammar.parts_of_speech import parts_of_speech
+from scope_ptz.english.grammar.parts_of_speech import parts_of_speech, verb_form
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 from scope_ptz.planner.grammar.parsing.parts.clause import DIRECTIONS, VERBS
 from scope_ptz.planner.grammar.parsing.parts.patterns import match_start
@@ -35,9 +35,15 @@ _HEADS = frozenset({
 })  # fmt: skip
 """Command words, and words for the camera, that can end a compound noun."""
 
+_SHOWN_HEADS = frozenset({"spot", "spots", "stop", "stops", "stand", "post", "posts"})
+"""Those that also end a compound after "show me": the others may end the description of a preset ("the gate camera")."""
+
 _TOPIC = "_ (?P<nouns>_{1,2}) (PREP (DET)? (FREE|PRESET){1,3})? COMMA (BE|DOV|HAVEV) (they|PRON) _"
 _TOPIC_MODIFIERS = frozenset({"stop", "call", "check", "parking", "head", "tail", "end", "step"})
 """Command words that can begin the plural thing of a question that follows it: "stop lights on the bridge, are they red?"."""
+
+_SIDES = frozenset({"back", "front", "side", "lower", "upper"})
+"""Words for the side of a building that are command words elsewhere."""
 
 _PLACES = frozenset({"pitch", "track", "swing", "stand", "roll"})
 """Command words that are places after a preposition and an article: "the sprinklers on the pitch"."""
@@ -71,6 +77,14 @@ _BEFORE_OBJECT = frozenset({"on", "at", "onto", "find", "locate", "follow", "tra
 """Words before a noun phrase that names an object in the picture."""
 
 
+_LAST_WORDS = {
+    "can": frozenset(
+        {"jerry", "watering", "petrol", "gas", "fuel", "oil", "paint", "spray", "tin", "trash", "garbage", "milk", "beer"}
+    ),
+    "steer": frozenset({"skid"}),
+}
+"""Command words and auxiliaries that end a compound with certain nouns: "the jerry can", "the skid steer"."""
+
 _NO_MODIFIERS = frozenset({"other", "same", "own", "next", "last", "only", "whole"})
 """Words before a noun that form no compound with it: "the other camera"."""
 
@@ -87,9 +101,14 @@ def with_compound_nouns(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
             continue
         after = lexemes[i + 1] if i + 1 < len(lexemes) else None
         later = lexemes[i + 2] if i + 2 < len(lexemes) else None
+        if x.has("ORDINAL") and _is_counted_ordinal(out[i - 1], after):
+            out[i] = x.reworded(x.word, "FREE")
+        if x.word in _SIDES and _is_side_of_building(out[i - 1], after, later):
+            out[i] = x.reworded(x.word, "FREE")
         if x.word == "no" and _is_prohibition(out[i - 1], after, later):
             out[i] = x.reworded(x.word, "FREE")
-        if _is_modifier(out, i, after) or _is_head(out, i, after) or _is_numbered(out, i, after):
+        is_last = out[i - 1].word in _LAST_WORDS.get(x.word, ()) and not (after is not None and after.has("SELF"))
+        if is_last or _is_modifier(out, i, after) or _is_head(out, i, after) or _is_numbered(out, i, after):
             out[i] = x.reworded(x.word, "FREE")
     return out
 
@@ -133,7 +152,23 @@ def _is_head(lexemes: Sequence[Lexeme], i: int, after: Lexeme | None) -> bool:
     before_phrase = lexemes[first - 1] if first else None
     if before_phrase is None or before_phrase.word in _BEFORE_OBJECT:
         return True
-    return before_phrase.has("FIND", "TRACK", "COMMA", "FILLER", "STOP")
+    is_shown = before_phrase.has("SELF") and first > 1 and lexemes[first - 2].has("SHOW")  # "show me the penalty spot"
+    return before_phrase.has("FIND", "TRACK", "COMMA", "FILLER", "STOP") or (is_shown and x.word in _SHOWN_HEADS)
+
+
+def _is_counted_ordinal(before: Lexeme, after: Lexeme | None) -> bool:
+    """Return whether an ordinal begins a compound, because what is counted has no order: "how many first aiders"."""
+    return before.has("HOWMANY", "COUNTNOUN") and after is not None and after.has("FREE")
+
+
+def _is_side_of_building(before: Lexeme, after: Lexeme | None, later: Lexeme | None) -> bool:
+    """Return whether "back" or the like describes the thing that a question without an article is about: "is back gate shut"."""
+    is_asked = before.has("BE") and after is not None and _is_noun(after) and later is not None and not later.has("PREP")
+    return (
+        is_asked
+        and later is not None
+        and (later.has("ADVERB") or "ADJ" in parts_of_speech(later.word) or verb_form(later.word) in {"past", "participle"})
+    )
 
 
 def _is_prohibition(before: Lexeme, after: Lexeme | None, later: Lexeme | None) -> bool:

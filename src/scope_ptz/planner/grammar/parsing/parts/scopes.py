@@ -102,7 +102,13 @@ def _needs_more(lexemes: Sequence[Lexeme]) -> bool:
 def scope_of(lexemes: Sequence[Lexeme]) -> View | None:
     """Return the view if lexemes only say where to look: "the whole place around", "current view only"; None for other words."""
     lexemes = trimmed(lexemes, *_TRIVIAL)
-    return "full" if full_match(_ALL_OF_IT, lexemes) else "current" if full_match(_THIS_VIEW, lexemes) else None
+    return (
+        "full"
+        if full_match(f"{_ALL_OF_IT}|(DET)? (LIMIT|full|complete|entire|whole) (VIEWNOUN|panorama) only?", lexemes)
+        else "current"
+        if full_match(_THIS_VIEW, lexemes)
+        else None
+    )
 
 
 def has_full_scope(lexemes: Sequence[Lexeme]) -> bool:
@@ -140,7 +146,7 @@ def split_trailing_place(source: Source, lexemes: Sequence[Lexeme]) -> tuple[tup
     for size in range(min(len(lexemes) - 1, 14), 1, -1):
         tail = lexemes[len(lexemes) - size :]
         before = lexemes[len(lexemes) - size - 1]
-        lead = full_match(r"(?P<prep>at|from|in|on|using|for|for each|between|across|to|outside) (?P<place>_+)", tail)
+        lead = full_match(r"(?P<prep>at|from|in|on|using|for|for each|between|across|to|outside|by) (?P<place>_+)", tail)
         is_past_particle = (
             before.word in _PARTICLES and len(lexemes) > size + 1 and lexemes[len(lexemes) - size - 2].has("FREE", "HAVEV")
         )
@@ -163,7 +169,12 @@ def split_trailing_place(source: Source, lexemes: Sequence[Lexeme]) -> tuple[tup
             not places
             or preposition in {"at", "from", "in", "using", "across"}
             or any(x.has("PRESETNOUN") for x in lead["place"])
-            or (preposition == "outside" and search("HOWMANY", lexemes) is not None and not _any_names_a_thing(places))
+            or (
+                preposition in {"outside", "by"}
+                and search("HOWMANY|COUNTNOUN|COUNT", lexemes) is not None
+                and not _any_names_a_thing(places)
+                and not (preposition == "by" and any(place.name.isalpha() for place in places))
+            )
             or (
                 preposition == "on"
                 and not source.has_moved

@@ -35,7 +35,8 @@ _COMMAND = (
     r"(?:at|for|up|down"
     r"|left|right|in|over)"
     r"|show (?:me|us)|tell|cameras?|closer|wider|higher|lower|stop|go to|goto|take (?:a|the|one|another|some)|leave (?:it|that)"
-    r"|pictures?|photos?|stills?|shots?|images?|pics?|view|times|(?:look|see|have a look) (?:everywhere|anywhere)"
+    r"|pictures?|photos?|stills|(?:an?|the|one|more|another|nice|quick|clear|good|single) still"
+    r"|shots?|images?|pics?|view|times|(?:look|see|have a look) (?:everywhere|anywhere)"
 )
 _DIRECTION = (
     r"(?:to the|on the|pan|turn|go|look|bit|touch|said|the) (?:left|right)|(?:left|right) (?:by|a bit|\d|side|one|hand)"
@@ -51,7 +52,8 @@ _RESTRICTION = (
     r"|(?:a single|one) (?:\w+ )?(?:move|movement|motion|command|go|step)"
 )
 _REQUEST = (
-    r"must(?! be \w+ed\b)|should(?! (?:be (?:in|here|back|due|along|ready)|have))|shall|ought|you|your|please|(?<!see "
+    r"must(?! be \w+ed\b)|should(?! (?:be (?:in|here|back|due|along|ready|my|our|his|her|their)|have)\b)"
+    r"|shall|ought|you|your|please|(?<!see "
     r")(?<!remember )"
     r"(?<!wonder )if|unless|until"
     r"|(?:know|tell|check|find out|ask) (?:how|what|whether|which|where|who|if|when)"
@@ -79,6 +81,7 @@ _HARMLESS = re.compile(
     r"|\b\w+ (?:is|are|was|were|keeps?) asking(?: me| us)?(?: about (?:it|them|this|that))?\W*$"
     r"|\b(?:i|we) (?:can['’]?t|cannot|could not|couldn['’]?t) (?:tell|make out|see|work out|read)"
     r"(?: from here)? (?:if|whether|what|which|who)\b"
+    r"|\b(?:got|have|had) (?:\w+ ){1,4}asking (?:me |us )?about\b"
     r"|\b(?:pan|tilt|zoom) (?:smoothness|speed|accuracy|performance|response|motors?|gears?|mechanism|backlash)\b"
     r"|\b(?:its|his|her|their) (?:left|right)[- ](?:turn|arm|leg|foot|wheel|wing|side|flank|indicator|headlight)s?\b"
     r"|\bi (?:just )?want(?:ed)? the (?:whole )?(?:lot|thing|works)\b|\bunder the camera\b"
@@ -134,7 +137,9 @@ _IDIOMS = re.compile(
     r"|i keep losing (?:track|count)|i swear(?: to god)?|there's one just \w+ in|do i need (?:my|me|a|an) \w+"
     r"|just wonderin(?:g)? (?:where|what|how|why|if|whether) [\w' ]+|i like to know what's [\w' ]+|can (?:you|yer|u) "
     r"count (?:them|em)|thanks a (?:million|bunch|lot)"
-    r"|(?:need|want) to know (?:if|whether) (?:i|we) (?:should|need|have to|can) [\w ]+|can (?:you|u) see|trying to "
+    r"|(?:i |we )?(?:just |only )?(?:need|want)(?:ed)? to know (?:if|whether) (?:(?:i|we) (?:should|need|have to|can)"
+    r"|it(?:'s| is) (?:(?:still |really )?worth|time to|too late)|there(?:'s| is) (?:any |a )?point) [\w ]+"
+    r"|can (?:you|u) see|trying to "
     r"(?:work out|figure out|see|decide) (?:if|whether|what|which) [\w' ]+|do (?:you|u) (?:reckon|think|know))[.!?]*$",
     re.IGNORECASE,
 )
@@ -145,6 +150,13 @@ _OCCASION = re.compile(
     r"|pan|tilt|count|take|check)\b)",
     re.IGNORECASE,
 )
+_MEANWHILE = re.compile(
+    r"(?:whilst|while) (?:i|we|they|he|she)\b[^,.;:?!]{3,60}?"
+    r"(?:,|(?= (?:can|could|would|will) you)) (?=(?:please|can|could|would|will)\b)",
+    re.IGNORECASE,
+)
+"""What happens in the meantime, before a request: "while we're shut can you ..."."""
+
 _PAST_NEWS = re.compile(
     r"(?P<news>[^,.;?!]*\b(?:yesterday|ago|earlier|last (?:night|week|month|time))\b[^,.;?!]*)[,.;!] "
     r"(?:anyway,? |so )?(?P<rest>(?:count|pan|tilt|zoom|take|go to|how many|is|are|any)\b.+)",
@@ -159,6 +171,9 @@ _INTO_PICTURE = re.compile(r"\b(?:into|in) (?:the )?(?:picture|view|frame|shot|s
 _NEWS_BEFORE_REQUEST = re.compile(
     r"(?P<news>[^?.;]+)[,;] (?P<rest>(?:(?:could|can|would|will) you|(?:please|kindly) (?!do\b)) ?(?:\w+ ){2}.+)", re.IGNORECASE
 )
+_ATTENTION = re.compile(r"^right, (?=(?:i|we|he|she|they|there|my|our|the)(?:['’]\w+)? )", re.IGNORECASE)
+"""A word that calls for attention before a statement; it is no direction."""
+
 _PRONOUNS = re.compile(r"\b(?:it|its|they|their|them|him|his|her|he|she|that|those|these|this|ones?)\b", re.IGNORECASE)
 DURATION = re.compile(r"\bfor (?:half )?(?:an?|\d+|[a-z]+) ?(?:seconds?|secs?|minutes?|mins?)\b|\bduration\b", re.IGNORECASE)
 FOLLOWING = re.compile(r"\b(?:follow|track|keep|stay|watch)", re.IGNORECASE)
@@ -168,6 +183,7 @@ _AS_FAR = re.compile(r"\bas (?:far|high|low|wide|close|tight|much)(?: \w+){0,3}$
 _MIN_WORDS = 3  # minimum number of words of a remark, and of a request after it
 _MIN_NEWS = 6  # minimum number of words of news before a question or request
 _MAX_REMARKS = 3
+_MAX_BEGINNINGS = 2  # news, and the occasion after it: "the lads are asking about it, so while we're shut, zoom in on it"
 
 
 def without_remarks(text: str, presets: tuple[str, ...]) -> str:
@@ -176,7 +192,8 @@ def without_remarks(text: str, presets: tuple[str, ...]) -> str:
     A remark is kept if it contains a word for a command, a restriction or a withdrawal, or the name of a preset. It is also kept if
     both the remark and the instruction before it contain a number: "pan left 20, Dave says thirty".
     """
-    text = _without_beginning(text, presets)
+    for _ in range(_MAX_BEGINNINGS):
+        text = _without_beginning(text, presets)
     for _ in range(_MAX_REMARKS):
         shorter = _without_last(text, presets)
         if shorter == text:
@@ -214,6 +231,8 @@ def _without_beginning(text: str, presets: tuple[str, ...]) -> str:
     """
     if (occasion := _OCCASION.match(text)) is not None and not asks_for_something(occasion[0], presets):
         return text[occasion.end() :]
+    if (meanwhile := _MEANWHILE.match(text)) is not None and not asks_for_something(meanwhile[0], presets):
+        return text[meanwhile.end() :]
     if (past := _PAST_NEWS.fullmatch(text)) is not None and not _PRONOUNS.search(past["rest"]):
         news = past["news"].replace("’", "'")
         if is_statement(lexemes_of(news)) and not _LIMITING.search(news):
@@ -228,7 +247,7 @@ def _without_beginning(text: str, presets: tuple[str, ...]) -> str:
             return match["rest"]
     news, *more = re.split(r",? so (?=(?:can|could|would|will) you |please )|, so ", text, maxsplit=1, flags=re.IGNORECASE)
     rest = more[0] if more else ""
-    return rest if len(rest.split()) >= _MIN_WORDS and _is_remark(news.strip(), presets) else text
+    return rest if len(rest.split()) >= _MIN_WORDS and _is_remark(_ATTENTION.sub("", news.strip()), presets) else text
 
 
 def _is_news(text: str, presets: tuple[str, ...]) -> bool:

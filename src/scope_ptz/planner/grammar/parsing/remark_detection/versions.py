@@ -8,8 +8,8 @@ from collections.abc import Iterator, Sequence
 from scope_ptz.planner.grammar.lexing.lexer import lexemes_of
 from scope_ptz.planner.grammar.parsing.parts.clause import VERBS
 from scope_ptz.planner.grammar.parsing.parts.statements import is_statement
-from scope_ptz.planner.grammar.parsing.remark_detection.features import features_of, statement_features_of
-from scope_ptz.planner.grammar.parsing.remark_detection.model import remark_model, withdrawal_model
+from scope_ptz.planner.grammar.parsing.remark_detection.features import features_of
+from scope_ptz.planner.grammar.parsing.remark_detection.model import remark_model
 from scope_ptz.planner.grammar.parsing.remark_detection.remark_forms import SUBJECT
 from scope_ptz.planner.grammar.parsing.remark_detection.segments import Segment, segments_of
 from scope_ptz.planner.grammar.parsing.remark_detection.shorter_versions import (
@@ -24,7 +24,6 @@ from scope_ptz.planner.grammar.parsing.remark_detection.surrounding_remarks impo
 _MAX_SEGMENTS = 12
 _MAX_VERSIONS = 8
 _MIN_LOG_ODDS = 0.0
-_MAX_WITHDRAWAL_LOG_ODDS = -1.0  # segments below it are left out in spite of a word that could take something back ("never")
 _MIN_WORDS = 2
 _MIN_STATEMENT_WORDS = 4  # shorter statements may be about what was said before them: "pan left 20, Sarah objected"
 
@@ -47,16 +46,11 @@ _TAKING_BACK = re.compile(
 )
 """Words with which a statement may take something back, or ask for something else: "it should be lower", "belay that"."""
 
-_LIMITS = (
-    r"instead|unless|if|until|till|otherwise|else|whichever|either|only|except|cancel|forget|ignore|scratch|both|each|every|again"
-    r"|whole|entire|full|everywhere|(?:last|that|this|other) one|lot|bit|touch|twice|half|zoom|pan|tilt"
-)
-_LIMITING = re.compile(rf"\b(?:{_LIMITS}|all the way|way|stop|without)\b", re.IGNORECASE)
-"""Words that limit what the others ask for, or say how far or how often."""
-
 _BINDING = re.compile(
-    rf"\b(?:{_LIMITS}|don['’]?t|do not|not|no|never|nor|without|when(?! you (?:get|have|can))|rather|wait|actually|stop|mind|mean"
-    r"|first|then|next|before|after|than|same|anywhere)\b",
+    r"\b(?:don['’]?t|do not|not|no|never|nor|without|instead|unless|if|when(?! you (?:get|have|can))|until|till|otherwise|else"
+    r"|whichever|either|only|except|rather|wait|actually|cancel|forget|ignore|scratch|stop|mind|mean|first|then|next|before|after"
+    r"|than|same|both|each|every|again|whole|entire|full|everywhere|anywhere|(?:last|that|this|other) one|lot|bit|touch|twice"
+    r"|zoom|pan|tilt)\b",
     re.IGNORECASE,
 )
 """Words with which a segment may change what the others ask for, so that it must not be left out."""
@@ -73,7 +67,7 @@ def versions_without_remarks(text: str, presets: tuple[str, ...]) -> Iterator[st
     log_odds = {
         index: remark_model().log_odds(features_of(segments, index, presets))
         for index, segment in enumerate(segments)
-        if _is_harmless(segments, index, presets) or not (_is_binding(segment.text, presets) or _is_short_comment(segments, index))
+        if not (_is_binding(segment.text, presets) or _is_short_comment(segments, index))
     }
     remarks = sorted((index for index, value in log_odds.items() if value > _MIN_LOG_ODDS), key=lambda index: -log_odds[index])
     left_out = [remarks[:size] for size in range(1, len(remarks) + 1)] + [[index] for index in remarks[1:]]
@@ -83,20 +77,11 @@ def versions_without_remarks(text: str, presets: tuple[str, ...]) -> Iterator[st
             yield version
 
 
-def _is_harmless(segments: Sequence[Segment], index: int, presets: tuple[str, ...]) -> bool:
-    """Return whether both models are sure that a segment is a remark that takes nothing back, and it limits nothing."""
-    return (
-        _LIMITING.search(segments[index].text) is None
-        and remark_model().log_odds(features_of(segments, index, presets)) > _MIN_LOG_ODDS
-        and withdrawal_model().log_odds(statement_features_of(segments, index, presets)) < _MAX_WITHDRAWAL_LOG_ODDS
-    )
-
-
 def _is_binding(text: str, presets: tuple[str, ...]) -> bool:
     """Return whether a segment begins with a command, or may restrict, forbid, repeat or take back something."""
     first = next((lexeme for lexeme in lexemes_of(text, presets) if not lexeme.has("FILLER", "AND", "BUT")), None)
-    if first is not None and first.has(*VERBS, "TELL", "HOWMANY"):
-        return True
+    if first is not None and (first.has(*VERBS, "TELL", "HOWMANY") or first.word == "of"):
+        return True  # "one picture, only one, of the van"
     if _TAKING_BACK.search(text) is not None:
         return True
     if (negated := _NEGATED_STATEMENT.match(text)) is not None:

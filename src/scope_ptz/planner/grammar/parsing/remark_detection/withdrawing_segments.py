@@ -3,21 +3,55 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
+from scope_ptz.planner.grammar.lexing.lexer import lexemes_of
 from scope_ptz.planner.grammar.parsing.remark_detection.features import statement_features_of
 from scope_ptz.planner.grammar.parsing.remark_detection.model import withdrawal_model
 from scope_ptz.planner.grammar.parsing.remark_detection.remark_forms import gives_reason_for_return
 from scope_ptz.planner.grammar.parsing.remark_detection.segments import segments_of
 from scope_ptz.planner.grammar.parsing.remark_detection.shorter_versions import MAX_SHORTENED_CHARS
 
-_MIN_LOG_ODDS = 0.3
-"""At this value, one in a hundred harmless instructions is asked about (``python -m benchmarks.withdrawal_model``)."""
+_MIN_LOG_ODDS = 0.5
+"""At this value, one in two hundred harmless instructions is asked about (``python -m benchmarks.withdrawal_model``)."""
+
+_COMMANDS = (
+    "PAN", "TILT", "TURN", "AIM", "RAISE", "ZOOM", "ENLARGE", "WIDEN", "SHOW", "FIND", "COUNT", "READ", "DESCRIBE", "SNAP", "SCAN",
+    "COMPARE",
+)  # fmt: skip
+"""Verbs that never begin a statement about a command, unlike "hold it", "leave it" and "check with me first"."""
 
 _MAX_SEGMENTS = 3  # segments of one instruction that are yielded: for each of them the caller plans once more
 
 
-def withdrawing_segments(text: str, presets: tuple[str, ...]) -> Iterator[tuple[str, str]]:
-    """Yield each segment that probably takes a command back, and the text without it; the likeliest first.
+@dataclass(frozen=True, slots=True)
+class WithdrawingSegment:
+    """A segment that probably takes a command back.
+
+    Attributes:
+        text: Its words.
+        rest: The instruction without it.
+        before: If other segments follow it, the beginnings of the instruction before it, each a segment shorter than the previous.
+    """
+
+    text: str
+    rest: str
+    before: tuple[str, ...]
+
+
+def is_command(text: str, presets: tuple[str, ...]) -> bool:
+    """Return whether a segment begins with the verb of a command ("then count the cars"), so that it is no statement.
+
+    Args:
+        text: The words of the segment.
+        presets: The camera's presets.
+    """
+    first = next((lexeme for lexeme in lexemes_of(text, presets) if not lexeme.has("FILLER", "AND", "THEN", "COMMA")), None)
+    return first is not None and first.has(*_COMMANDS) and not first.has("TELL")
+
+
+def withdrawing_segments(text: str, presets: tuple[str, ...]) -> Iterator[WithdrawingSegment]:
+    """Yield each segment that probably takes a command back; the likeliest first.
 
     A segment that the plan depends on ("no, 30") is none: the caller compares the plans of both texts.
 
@@ -28,11 +62,16 @@ def withdrawing_segments(text: str, presets: tuple[str, ...]) -> Iterator[tuple[
     segments = segments_of(text) if len(text) <= MAX_SHORTENED_CHARS else ()
     if len(segments) < 2:
         return
-    log_odds = [withdrawal_model().log_odds(statement_features_of(segments, index, presets)) for index in range(len(segments))]
-    likeliest = sorted((index for index, value in enumerate(log_odds) if value > _MIN_LOG_ODDS), key=lambda index: -log_odds[index])
+    log_odds = {
+        index: withdrawal_model().log_odds(statement_features_of(segments, index, presets))
+        for index, segment in enumerate(segments)
+        if not is_command(segment.text, presets)
+    }
+    likeliest = sorted((index for index, value in log_odds.items() if value > _MIN_LOG_ODDS), key=lambda index: -log_odds[index])
     for index in likeliest[:_MAX_SEGMENTS]:
-        segment = segments[index]
+        segment, is_last = segments[index], index + 1 == len(segments)
         if gives_reason_for_return(text[: segment.start], segment.text):
             continue
-        following = segments[index + 1].start if index + 1 < len(segments) else len(text)
-        yield segment.text, (text[: segment.start] + text[following:]).strip(" ,;:-–—")
+        following = len(text) if is_last else segments[index + 1].start
+        before = () if is_last else tuple(text[: earlier.end] for earlier in reversed(segments[:index]))
+        yield WithdrawingSegment(segment.text, (text[: segment.start] + text[following:]).strip(" ,;:-–—"), before)

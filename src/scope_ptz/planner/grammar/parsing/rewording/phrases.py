@@ -12,6 +12,8 @@ from scope_ptz.planner.grammar.parsing.parts.patterns import match_start, search
 from scope_ptz.planner.grammar.parsing.parts.scopes import SECONDS
 from scope_ptz.planner.grammar.parsing.rewording.preset_lists import with_presets_reworded
 from scope_ptz.planner.grammar.parsing.rewording.single_words import reworded_in_context
+from scope_ptz.planner.grammar.parsing.rewording.stated_angles import with_angles_in_place
+from scope_ptz.planner.grammar.parsing.rewording.word_order import in_order_of_command
 
 _WANTS = ("want_to", "like_to", "love_to", "need_to", "wish_to")
 _NOT_SHOWN = ("WHQ", "HOWMANY", "HOWMANYMORE", "IF", "REL", "PRON", "SOMEONE", "FULL", "ANY", "EVERY")
@@ -65,7 +67,8 @@ _CHECKED_AT_PLACE = (
 
 def reworded(lexemes: Sequence[Lexeme]) -> tuple[Lexeme, ...]:
     """Replace some wordings: "I want to see the yard" becomes "let me see the yard", and "return left" becomes "go back left"."""
-    lexemes = _with_place_first(_without_in_steps_of(with_compound_nouns(lexemes)))
+    lexemes = in_order_of_command(with_compound_nouns(with_angles_in_place(lexemes)))
+    lexemes = _with_place_first(_without_in_steps_of(lexemes))
     lexemes = _without_yes_or_no(with_presets_reworded(lexemes))
     lexemes = _told_count(_count_at_list(_picture_wanted_first(_at_places_first(lexemes))))
     out: list[Lexeme] = []

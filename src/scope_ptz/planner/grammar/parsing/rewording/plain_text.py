@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from scope_ptz.planner.grammar.lexing.spelling import corrected_noun, with_whole_ending
+from scope_ptz.planner.grammar.lexing.spelling import corrected_noun, with_whole_ending, without_stretched_letters
 from scope_ptz.planner.grammar.parsing.remark_detection.surrounding_remarks import without_remarks
 from scope_ptz.planner.grammar.parsing.rewording.rewordings import reworded_text, rewordings
 from scope_ptz.planner.grammar.parsing.rewording.text_conditions import CONDITIONS
@@ -23,6 +23,7 @@ _ASIDES = rewordings((*WITHDRAWALS, *REMARKS))
 _WORDINGS = rewordings((*MOVES, *VIEWS, *QUESTIONS, *COUNTS))
 _NONSTANDARD = re.compile(rf"\b(?:{'|'.join(WORDS)})\b['’]?(?!\w)", re.IGNORECASE)
 _LONG_WORD = re.compile(r"\b[a-z]{5,}\b")
+_STRETCHED_WORD = re.compile(r"\b[a-z]*([a-z])\1\1[a-z]*\b", re.IGNORECASE)
 _SHORT_ENDING = re.compile(r"\b([A-Za-z]{2,}in)\b['’]?")
 _MAX_CHARS = 600  # longer texts are left as they are: nobody types them in one go, and each pattern would have to search them
 
@@ -31,6 +32,7 @@ def written_out(text: str) -> str:
     """Return a text with abbreviations, dialect, shortened endings and misspelt nouns in standard English."""
     if len(text) > _MAX_CHARS:
         return text
+    text = _STRETCHED_WORD.sub(lambda match: without_stretched_letters(match[0].lower()), text)
     text = _LONG_WORD.sub(lambda match: corrected_noun(match[0]), text)
     text = _NONSTANDARD.sub(lambda match: WORDS[match[0].lower().rstrip("'’")], text)
     return with_question_apart(reworded_text(_SHORT_ENDING.sub(_whole, text), _STANDARD))

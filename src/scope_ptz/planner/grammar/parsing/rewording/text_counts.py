@@ -24,14 +24,19 @@ COUNTS = (
         ", ",
     ),
     (r"\btally up\b", "count"),
-    (r"\b(how m[ae]ny [\w ]+? have (?:we|i|you) got) left\b", r"\1"),
+    (r"\b(?:object|item|thing)s? count(?:s|ing)?[,:] (?=(?:the )?[a-z])", "count "),
+    (r"\b(how m[ae]ny [\w ]+? (?:have (?:we|i|you) got|do (?:we|i|you|they) (?:still )?have)) left\b", r"\1"),
     (r"^head ?count at (the [\w -]+?) ?[-–—,:] ?how many (\w+)\W*$", r"how many \2 are at \1"),
     (r", how many, then\b", ", then"),
     (r"\b(how many [\w ]+?) are out\?*$", r"\1 are there?"),
     (r"^([\w ]+?), how many can (?:you|u) see\W*$", lambda match: _counted(match)),
     (r"^(?!.*\b(?:then|and)\b)([\w' ]+?)\. (find|follow|zoom in on|track) it\W*$", lambda match: _found(match)),
     (r"^([\w ]+?)(?: in view)?,? (?:how many|give (?:us|me) a (?:number|count|figure))\W*$", lambda match: _counted(match)),
-    (r"\b(currently|presently) (?=visible|in view|in the picture|on screen)", ""),
+    (
+        r"\b(?:currently|presently|right now|at present) "
+        r"(?=visible\b|(?:in|within|inside|on) (?:the |this )?(?:view|sight|frame|shot|picture|image|screen|camera)\b)",
+        "",
+    ),
     (r"\b((?:how many|number of) [\w ]+?)(?: are)? out (?=(?:at|on|in) the )", r"\1 "),
     (
         r"^(?:any|are there any) more ([\w ]+?) (at|in|on) (.+?) than (?:at |in |on )?(.+?)\?*$",

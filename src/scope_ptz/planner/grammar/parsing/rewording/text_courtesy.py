@@ -2,12 +2,33 @@
 
 from __future__ import annotations
 
+from scope_ptz.english.grammar.numbers import NUMBER_WORDS
+
 _NAMES = r"(?-i:[A-Z][\w.]*(?:,? [A-Z][\w.]*)*)"
 _CLOSINGS = (
     r"(?:(?:kind|best|warm|with kind) regards|regards|many thanks|with thanks|thanks|best wishes|cheers|yours(?: \w+)?|thank you)"
 )
 
+_NUMBER = "|".join(word for word in NUMBER_WORDS if word.isalpha())
+_BEFORE_ADDRESS = (
+    r"(?<!the )(?<!that )\b(a lot|a bit|a little|all the way|in|out|left|right|up|down|around|degrees?|deg|home|please|again"
+    rf"|\d+x|seconds?|minutes?|times|percent|(?:left|right|up|down|by) (?:\d+|{_NUMBER}))"
+)
+"""Words at the end of a command, after which a form of address needs no comma: "down a lot, dude"."""
+
+_TIME = r"(?:\d+(?:\.\d+)?|an?|half an?|[a-z]+(?:-[a-z]+)?) ?(?:s|secs?|seconds?|mins?|minutes?)(?: and a half)?"
+
 COURTESIES = (
+    (rf"^(?:auto[- ]?)?tracking(?: test| check)?[,:] ({_TIME})[,:] (?=the |an? |that |this )([^.;]+?)\W*$", r"track \2 for \1"),
+    (
+        rf"^(?:the )?duration(?: is|:)? ({_TIME})[.,;:] (?:please )?((?:follow|track|trail|tail|shadow|keep|stay)\b[^.;]*?)\W*$",
+        r"\2 for \1",
+    ),
+    (
+        r",? if you (?:can|could),? ((?:please|pls|thank you|thanks|cheers|ta|much appreciated)(?: very much| so much| a lot)?)"
+        r"(?=\W*$)",
+        r", \1",
+    ),
     (r"^(?-i:[A-Z])\w+ here, (?=i |can |could |please|we )", ""),
     (r"^(?:just |only )?(?:trying|testing|checking|practising)(?: out)? (?:the |this |your )?[\w ]{1,30}: ", ""),
     (r"[,.] (?:that|this) should (?:line it up|do it|get it|be enough|sort it)\W*$", ""),
@@ -78,7 +99,16 @@ COURTESIES = (
     (r",? (?:i think )?(?:that['’]?s|thats|that is) about (?:where|right|it)\b[^,.;?]*\W*$", ""),
     (r",? if you(?:['’]d| would| could) be so (?:good|kind)(?: as to)?\b", ""),
     (r"(?<=\w) (?=it['’]s too \w+)", ", "),
-    (r"\b(a lot|a bit|in|out|left|right|up|down) (?:man|partner|boss|buddy|pal|mate)\b(?=,|\W*$)", r"\1"),
+    (
+        rf"{_BEFORE_ADDRESS} (?:my )?(?:man|partner|boss|buddy|pal|mate|matey|dude|bro|bruv|fam|chief|skipper|amigo|geezer|babe)\b"
+        r"(?=,|\W*$)",
+        r"\1",
+    ),
+    (
+        r"(?<!the )\b(a lot|a bit|all the way|left|right|down|degrees|home|please|\d+x|seconds|(?:up|by|left|right|down) \d+)"
+        r" (?:lads|chaps|guys|folks|fellas)(?=,|\W*$)",
+        r"\1",
+    ),
     (r"^(?:oh,? )?do (?=look at|zoom|take|go|count|follow|show|find|tell)", ""),
     (r",? or what\?$", "?"),
     (r",? on reflection,? ", ", "),

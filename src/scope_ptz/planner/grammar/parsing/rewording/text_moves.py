@@ -27,6 +27,11 @@ _ABOUT = "(?:about|around|roughly|some|say|maybe|perhaps) "
 _MAST = "tower|mast|roof|pole|camera|cam"
 
 MOVES = (
+    (
+        r"^(?:please )?(?:start|starting|begin|beginning) (?:off )?(?:from|at) (?:the |its |your )?home(?: position| view| preset)?"
+        r"(?:,| and) (?=\w)",
+        "go home, then ",
+    ),
     (r"\btighten (?:it |her )?up\b", "zoom in"),
     (r"\bgo to (?:whichever|whatever)(?: one)? (?:it|that) is\b", "go there"),
     (r"\b(left|right|up|down)\. \1(?= (?:by )?\d)", r"\1"),
@@ -35,13 +40,13 @@ MOVES = (
     (r"\bbring (the|that|this) ([\w ]+?) into (?:a )?(?:close|closer|tight|full|better) view\b", r"zoom in on \1 \2"),
     (r"\bget ((?:the|that|this) [\w ]+?) nice and (?:big|large|close)\b", r"zoom in on \1"),
     (r"^home in on ", "zoom in on "),
-    (r"\b(left|right|up|down), \1\b", r"\1"),
+    (r"(?<!left, )(?<!right, )(?<!up, )(?<!down, )(?<!steps: )\b(left|right|up|down), \1\b(?!,[^.;]*\b(?:each|apiece)\b)", r"\1"),
     (r"\bzoom (?:in )?(?:on to|onto) ", "zoom in on "),
     (r"\bclick (?=an? |one |the |some |two |three )", "take "),
     (r"\balter (?=the |your )", "change "),
     (r"\b(?:begin|commence) (?=(?:follow|track|trail|shadow)\w*ing\b)", "start "),
     (
-        r"\b(?:relative |incremental )?(pan|tilt)(?: (?:move|movement|adjustment|step))?[,:] (?:of |by )?"
+        r"(?<!degrees )(?<!deg )\b(?:relative |incremental )?(pan|tilt)(?: (?:move|movement|adjustment|step))?[,:] (?:of |by )?"
         r"(?=(?:minus|plus|[-+]?\d))",
         r"\1 ",
     ),
@@ -105,14 +110,23 @@ MOVES = (
     (r"^need it zoomed (in|out)\b", r"zoom \1"),
     (r"\bmax(?:imum)? zoom (in|out)\b", r"zoom all the way \1"),
     (r"(?<=\w), go\W*$", ""),
-    (r"^hard (left|right),? all the way\b", r"all the way \1"),
+    (r"\b(left|right|up|down|in|out), (all the way(?: to the (?:stop|end|limit|edge))?)(?=\W*$)", r"\1 \2"),
+    (
+        r"^hard (left|right),? (?:all the way|(?:all the way |right )?to the (?:stop|end|limit|edge))(?=\W*$|[,.;])",
+        r"all the way \1",
+    ),
+    (r"\bmake (?:it|her|the cam(?:era)?) (go|come|move|turn|look|point|swing|pan|tilt|zoom)(?= )", r"\1"),
+    (
+        r"\b(?:can|could|will|would) you (?:please )?(turn|spin|swing) (it|her|the cam(?:era)?) right a?round(?= so)",
+        r"\1 \2 around",
+    ),
     (r"\bzoom (in|out), (?:maximum|max|full)\b", r"zoom all the way \1"),
     (
         r"\bset the pan(?: angle)? to (\d+) degrees to the (left|right)\b",
         lambda match: f"set pan to {'-' if match[2].lower() == 'left' else ''}{match[1]} degrees",
     ),
     (r"^(?:last of all|finally|at the end),? ([^,.]+?), (?:but )?first ([^,.]+?)\W*$", r"first \2, then \1"),
-    (r"^([^,.]+?),? but (count|take|check|go) ([^,.]+?) first\W*$", r"\2 \3, then \1"),
+    (r"^([^,.]+?),? but (count|take|check|go|pan|tilt|turn|zoom) ([^,.]+?) first\W*$", r"\2 \3, then \1"),
     (r"\b(more\b.*[?.] )go to the (?:busier|fuller) (?:one|of the two)\b", r"\1go there"),
     (r"\bturn clear a?round\b", "turn around"),
     (r"\b(\d+) ([1-7])/([2-8])\b", lambda match: f"{int(match[1]) + int(match[2]) / int(match[3]):g}"),

@@ -94,7 +94,7 @@ QUESTIONS = (
         r"\1 in the whole scene",
     ),
     (r"(?<=\blook )right the way (?=a?round\b)", "all the way "),
-    (r"\ball the way (?:a?round)(?: (?:us|you|here|the \w+))?(?=\W*$|,)", "all around"),
+    (r"\b(?:all the|the (?:whole|entire|full)) way (?:a?round)(?: (?:us|you|here|the \w+))?(?=\W*$|,)", "all around"),
     (r"(?<=\ball around),? (?:the|in a) (?:full|whole) (?:circle|turn)\b", lambda match: "" if _asks(match.string) else match[0]),
     (r"\baround the (?:whole|entire) \w+(?=\W*$)", "all around"),
     (r"\b(?:the whole|the entire) (?:place|site|area), all around\b", "all around"),

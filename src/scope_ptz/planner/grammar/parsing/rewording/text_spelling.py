@@ -28,6 +28,7 @@ WORDS = {
     "mek": "make",
     "mnay": "many",
     "nay": "no",
+    "nite": "night",
     "nxt": "next",
     "obtain": "get",
     "ontoo": "onto",
@@ -53,9 +54,17 @@ WORDS = {
 }
 """Misspelt, shortened and dialect words with their standard forms."""
 
+_TROUBLE = r"(?:an? |some |no |lots of |bad )?(?:trouble|problems?|issues?|bother|words?|hassle|grief|complaints?)"
+
 SPELLING = (
+    (rf"(?<=\w)([,.;]) had (?={_TROUBLE}\b)", r"\1 i had "),
     (r"(?<=\w)\s*(?:\.{2,}|…)(?=\s+\w)", ","),
     (r"\ball way\b", "all the way"),
+    (r"(?<!yes),? or (?:no|nah|nope|naw)(?=\W*$)", " or not"),
+    (r"\blook(at|for)\b", r"look \1"),
+    (r"\bzoom(in|out|on)\b", r"zoom \1"),
+    (r"\b(pan|tilt|turn|go)(left|right|up|down)\b", r"\1 \2"),
+    (r"\b(count|find|follow|track|show)(the|me)\b(?= )", r"\1 \2"),
     (r"\btheres\b", "there's"),
     (
         r"\b(check|see|tell me|know|confirm|verify|sure|find out|wondering) weather (?=the|there|any|it|he|she|they|my|our)",
@@ -65,6 +74,7 @@ SPELLING = (
     (r"(?<!['’\w])th?['’](?=[a-z])", "the "),
     (r"\bo['’](?= \w)", "of"),
     (r"\bw/ ?(?=\w)", "with "),
+    (r"(?<=[a-z]{2} )w (?=(?:the|an?|my|his|her|their|that|this|no|two)\b)", "with "),
     (r"\b4 (me|us)\b", r"for \1"),
     (r"\br (there|they|you|we)\b", r"are \1"),
     (r"\b(list|photo|picture|pic|shot|number|count|view) o (?=the|that|all)", r"\1 of "),

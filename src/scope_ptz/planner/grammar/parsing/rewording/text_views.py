@@ -10,13 +10,21 @@ _MOVED = re.compile(r"\b(?:left|right|up|down|(?:pan|tilt|zoom)\w*(?! in on| on)
 
 _MOVES = re.compile(r"\b(?:pan|tilt|zoom|turn|move|swing|rotate|look|lift|raise|lower|left|right|up|down|in|out)\b", re.IGNORECASE)
 
+_WORD = re.compile(r"\w")
+
 
 def _wanted_in_frame(match: re.Match[str]) -> str:
-    """Return "zoom in on the crane" for "I want the crane in the picture". After a move, the wish is the reason for the move."""
-    return match[0] if _MOVES.search(match.string[: match.start()]) else f"zoom in on {match[1]}"
+    """Return "zoom in on the crane" for "I want the crane in the picture". Beside a move, the wish is the reason for the move."""
+    if _MOVES.search(match.string[: match.start()]):
+        return match[0]
+    is_alone = not _WORD.search(match.string[: match.start()] + match.string[match.end() :])
+    return f"zoom in on {match[1]}" if is_alone else f"let me see {match[1]}"
 
 
 VIEWS = (
+    (r"^preset (?:recall|call[- ]?up|call|selection|select)(?: test)?[:,]? (?=\w)", "go to "),
+    (r"^(?:the )?presets? list(?: first)?(?=\W*$|[,.;]| then\b| and\b)", "list the presets"),
+    (r"([,.;] (?:and )?(?:then )?)image(?=\W*$)", r"\1take an image"),
     (
         r"\b(?:know|see|hear|tell me) (?:what|which) (?:(?:camera|memory|stored|saved|preset) )?"
         r"(?:places|positions|spots|presets|views) (?:this|the|that) (?:camera|thing|unit|device|system) "
@@ -72,7 +80,7 @@ VIEWS = (
     (r"^tight (?:in )?on ", "zoom in on "),
     (
         r"^where(?:['’]?s| is) ((?:the|that|my|our) [^?.!,;]+?)(?: got to| gone)?[?,]\s*(?:zoom (?:in )?(?:on|to)"
-        r"|find|show me) (?:it|him|her|them)(?: for (?:me|us)| and show (?:me|us))?\s*[.!]*$",
+        r"|find|show me) (?:it|him|her|them)(?: for (?:me|us)| and show (?:me|us)| please| quickly| now)*(?=\s*[.!]*$|[,.;] )",
         r"zoom in on \1",
     ),
     (r"^keep an eye on (.+?),? and follow (?:it|him|her|them)(?: for (?=.+$)|$)", r"follow \1 for "),
@@ -200,6 +208,10 @@ VIEWS = (
     ),
     (r"\bi would appreciate a closer look at ", "zoom in on "),
     (r"\bget (?:me )?((?:the|that) [\w ]+?) in close\b", r"zoom in on \1"),
+    (
+        r"\b(?:bring|get|pull) (it|him|her|them) (?:up |in |right |nice and |really |very )*close(?: up)?(?=\W*$|[,.;]| then\b)",
+        r"zoom in on \1",
+    ),
     (r"^i want to see ((?:the|that) [\w'’ ]+?), bring it up close\W*$", r"zoom in on \1"),
     (r"\bmake ((?:the|that) [\w ]+?) fill the (?:picture|frame|view|screen)\b", r"zoom in on \1"),
     (r"^(?:i )?can['’]?t see (?:the )?([\w ]+?) anywhere, (find|locate) it(?: for me)?\W*$", r"find the \1"),

@@ -17,6 +17,11 @@ _LEAVE_OUT = (
 
 WITHDRAWALS = (
     (
+        r"^(?:please )?(?:do not|don['’]?t) (?:recall|use|call(?: up)?|load|select|go to|visit) (?:any|an?)(?: of the)? presets?\b"
+        r"(?:,? (?:and|but)|[,.;]) (?!.*\b(?:go|recall|visit|show|call|presets?|views?)\b)",
+        "",
+    ),
+    (
         r"[,;.] (?:and |but )?(?:please )?(?:don['’]?t|do not) bother (?:with|about|counting) (?:the |a |an |any )?"
         r"(?!(?:pan|tilt|zoom|turn|mov)\w*)[\w ]{1,20}\W*$",
         "",

@@ -198,8 +198,9 @@ class ClauseBoundaryDetector(SubordinateClauseDetector):
             and match_start("(do|MODAL) not _", self.lexemes[i:])
         ):
             return True  # "go to the gate don't take a picture"
-        if lexeme.word == "without" and match_start(WITHOUT_MOVING, self.lexemes[i:]) and not self._is_question():
-            return True  # "pan left 20 without zooming"
+        if lexeme.word == "without" and match_start(WITHOUT_MOVING, self.lexemes[i:]):
+            is_request = match_start(f"(FILLER|COMMA)* MODAL SELF (FILLER|ADVERB)* ({'|'.join(VERBS)})", self.words)
+            return is_request is not None or not self._is_question()  # "pan left 20 without zooming"
         if match_start(
             "(with|TAKE-ING|SNAP-ING|COUNT-ING|READ-ING|DESCRIBE-ING) _{1,8}? (EACHTIME|BETWEENEACH|EVERY NUM)", self.lexemes[i:]
         ):

@@ -177,6 +177,6 @@ PLACE_LEAD = (
 
 WITHOUT_MOVING = (
     r"without (any|DET|FILLER)* (PAN-ING|TILT-ING|ZOOM-ING|TURN-ING|CARRY-ING|SWITCH-ING|PAN|TILT|ZOOM|movement) (DET|CAMERA|it|"
-    r"VIEWNOUN|ZOOMNOUN|PAN|TILT|at_all|anything|FILLER|OR|ZOOM-ING|PAN-ING|TILT-ING)* (COMMA|STOP|AND|THEN|BUT|\Z)"
+    r"VIEWNOUN|ZOOMNOUN|PAN|TILT|IN|OUT|at_all|anything|FILLER|OR|ZOOM-ING|PAN-ING|TILT-ING)* (COMMA|STOP|QUESTION|AND|THEN|BUT|\Z)"
 )
 """Words that accompany a command and forbid a move: "without zooming", "without moving the camera"."""

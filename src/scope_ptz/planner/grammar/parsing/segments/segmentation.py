@@ -11,6 +11,7 @@ from scope_ptz.planner.grammar.parsing.parts.clause import DIRECTIONS, MOTION_VE
 from scope_ptz.planner.grammar.parsing.parts.courtesy import is_polite
 from scope_ptz.planner.grammar.parsing.parts.noun_phrases import is_noun_phrase
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start, search
+from scope_ptz.planner.grammar.parsing.parts.scopes import scope_of
 from scope_ptz.planner.grammar.parsing.segments.clause_boundaries import ClauseBoundaryDetector
 from scope_ptz.planner.grammar.parsing.segments.clause_starts import (
     ENDS,
@@ -94,7 +95,7 @@ class _Splitter(ClauseBoundaryDetector):
             )
         ):
             self._close()
-            self.link = "." if self.link == "." else "then"
+            self.link, self.opener = "." if self.link == "." else "then", lexeme
             return i + 1
         if (
             self.words
@@ -157,7 +158,7 @@ class _Splitter(ClauseBoundaryDetector):
         if lexeme.word == "so" and self.words and i + 1 < len(self.lexemes) and self._is_verb(i + 1):
             self.marker = "REASON" if self._is_reason_for(self.lexemes[i + 1]) else self.marker  # "bit of glare so tilt down"
             self._close()
-            self.link = "and"
+            self.link, self.opener = "and", lexeme
             return i + 1  # "the picture is too dark, so pan right"
         if not self.completed and lexeme.has("COMMA", "DASH") and full_match(_OPENER, self.words):
             self.words = []
@@ -281,7 +282,7 @@ class _Splitter(ClauseBoundaryDetector):
 
     def _is_label(self, i: int) -> bool:
         """Return whether the words before the colon at a position name what follows it: "preset: yard", "tilt: -5"."""
-        if 0 < len(self.words) < 3 and self.words[-1].has("PRESETNOUN", "CAMERA"):
+        if 0 < len(self.words) < 3 and self.words[-1].has("PRESETNOUN", "CAMERA") and scope_of(self.words) is None:
             return True
         if full_match("(close_up|COUNT|READ|TRACK|FIND|headcount|presence check|COUNTNOUN|LISTING)", self.words):
             return True  # "close-up: padlock"
