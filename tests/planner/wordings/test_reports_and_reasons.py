@@ -69,7 +69,6 @@ def test_reasons_for_going_back(reason: str) -> None:
         "pan left 20, that was too much",
         "zoom in, that was too much",
         "zoom out 3x, that was too much",
-        "go to the gate, that was better",
         "go to the gate, I like the other one",
         "go to the gate, nobody is allowed there",
         "pan left 20, the gate is better",

@@ -61,14 +61,14 @@ _EXTENT = re.compile(
 """Words which show that a phrase with "for" or "as" says how long or how far to go, so that it must be kept."""
 
 UNFINISHED = re.compile(
-    r"\b(?:until|till|til|if|when|once|unless|while|as|that|which|who|where|what|whether|how|and|or|but|to|the|an?|of|for|at|on|by|with"
-    r"|(?<!zoom )(?<!right )(?<!way )(?<!further )(?<!closer )(?<!bit )in"
-    r"|(?:how|what|who|where)['’]s|than|like|before|after|whatever|because|so|is|are"
-    r"|(?<!where we )(?<!where i )(?<!where it )(?:was|were)"
-    r"|not|only|just|every|each|time)\W*$",
+    r"\b(?:until|till|til|if|when|once|unless|while|as|that|which|who|where|what|whether|how|and|or|but|to|the|an?|of|for|at|on|in|by|with"
+    r"|(?:how|what|who|where)['’]s|than|like|before|after|whatever|because|so|is|are|was|were|not|only|just|every|each|time)\W*$",
     re.IGNORECASE,
 )
 """The end of a text that is incomplete without the words after it: "pan right until" before "something moves"."""
+
+_FINISHED = re.compile(r"\b(?:(?:zoom|right|way|further|closer|a bit) in|where (?:we|i|it) (?:was|were))\W*$", re.IGNORECASE)
+"""Exceptions, if the words after them are a remark in a known form: "zoom in, I like this one"."""
 
 _REFERENCE = re.compile(r"\b(?:it|its|they|their|them|him|his|her|he|she|those|these|ones?|both|same)\b", re.IGNORECASE)
 _INTERJECTION = re.compile(r"^(?:oo+h|oh|ah|argh|well|hey|right|ok|okay|now)\b,? (?!no\b|wait\b)", re.IGNORECASE)
@@ -114,8 +114,9 @@ def _ends(text: str, presets: tuple[str, ...]) -> Iterator[int]:
     """Yield each index at which a text may end because only remarks follow."""
     for match in _BOUNDARY.finditer(text):
         said, tail = text[: match.start()], text[match.end() :].rstrip(" .!?")
-        is_left_out = is_remark(tail, presets) or gives_reason_for_return(said, tail)
-        if UNFINISHED.search(said) is None and is_left_out and not is_amount(said, tail):
+        is_known = EXEMPT.fullmatch(tail) is not None or gives_reason_for_return(said, tail)
+        is_whole = UNFINISHED.search(said) is None or (is_known and _FINISHED.search(said) is not None)
+        if is_whole and (is_known or is_remark(tail, presets)) and not is_amount(said, tail):
             yield match.start()
     for match in _PURPOSE.finditer(text):
         tail = text[match.end() :]
