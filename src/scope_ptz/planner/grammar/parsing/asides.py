@@ -66,6 +66,11 @@ _TAKEN_BACK = (
 )
 """Words after a command that take it back, as in "no, don't", "no need" and "hang on"."""
 
+_PLAINLY_TAKEN_BACK = (
+    "(no|nah|nope|wait|oh|ah|hang_on|hold_on|actually|please|BUT|FILLER|COMMA|DASH|STOP)* "
+    "(((DOV|do) not|do_not|(?!no_more) NEGATED) (do (it|that))?|do_not_bother|no_need) (please|FILLER|after all)*"
+)
+
 _MOVE_AT_THE_END = (
     f"COMMA (NOW|FILLER|AND|BUT|COMMA)* ({'|'.join(DIRECTIONS)}|IN|OUT|CLOSER|WIDER) (LITTLE|LOT|LIMIT|MORE|FILLER)* (COMMA|\\Z)"
 )
@@ -108,6 +113,11 @@ def is_withdrawal_statement(clause: Clause) -> bool:
 def takes_back(clause: Clause) -> bool:
     """Return whether a clause after a command takes it back: "... no, don't", "... no need", "... hang on"."""
     return not clause.is_question and full_match(_TAKEN_BACK, clause.lexemes) is not None
+
+
+def plainly_takes_back(clause: Clause) -> bool:
+    """Return whether a clause says that a command must not be carried out: "no, don't", unlike "hang on" and "not yet"."""
+    return full_match(_PLAINLY_TAKEN_BACK, clause.lexemes) is not None
 
 
 def drops_everything(clause: Clause) -> bool:
