@@ -54,9 +54,7 @@ _RADIO_CHECK = "(FILLER|COMMA|DASH|CAMERA)* (radio|comms|mic|sound) check (over|
 
 _RECEIVING = "Receiving you. Tell me where to look, or ask what is in view."
 _WHO_ARE_YOU = "(FILLER|AND|COMMA)* (who|what) BE (you|SELF) (exactly|actually|FILLER)* (STOP|QUESTION)*"
-_INTRODUCTION = (
-    'I steer the camera and answer questions about what it sees, such as "how many people are there?".'
-)
+_INTRODUCTION = 'I steer the camera and answer questions about what it sees, such as "how many people are there?".'
 _WELCOME = "You're welcome."
 _THANK_YOU = "Thank you. Tell me when you want to see something else."
 _WELL = 'I am well, thank you. Tell me where to look, or ask what is in view, for example: "how many people are there?".'
