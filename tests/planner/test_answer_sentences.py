@@ -33,3 +33,8 @@ def test_a_number_that_belongs_to_the_next_word_is_kept() -> None:
 def test_a_sentence_has_one_full_stop() -> None:
     assert sentence("there is one. (Source: the camera.)") == "There is one. (Source: the camera.)"
     assert sentence("there is one (at least)") == "There is one (at least)."
+
+
+def test_a_number_before_a_name_that_begins_with_one_is_a_word() -> None:
+    assert chosen_text("5 mph sign", 2, "5 mph sign") == "one of the two 5 mph signs in view"
+    assert chosen_text("sign", 2, "the Plough sign") == "one of the 2 signs in view, the Plough sign"

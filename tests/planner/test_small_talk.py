@@ -8,6 +8,8 @@ from scope_ptz.geometry import Pose
 from scope_ptz.planner.base import Briefing, Finish, State
 from scope_ptz.planner.grammar import decide
 from scope_ptz.planner.grammar.answerable import answerable_questions
+from scope_ptz.planner.grammar.binding.small_talk import reply_to_small_talk
+from scope_ptz.planner.grammar.binding.unknowable import why_unknowable
 from scope_ptz.planner.plan import plan
 from tests.planner.stage import LIMITS, PRESETS, Stage
 
@@ -208,3 +210,31 @@ def test_a_full_circle_is_where_to_look_only_for_a_question() -> None:
     assert [call.arguments for call in plan("look all around, the full circle", PRESETS).calls] == [{"pan_deg": 360}]
     asked = plan("how many cars are there all around, the full circle?", PRESETS).calls
     assert [call.arguments for call in asked] == [{"description": "cars", "view": "full"}]
+
+
+@pytest.mark.parametrize("text", ["who are you?", "so what are you exactly?"])
+def test_the_planner_says_what_it_is(text: str) -> None:
+    assert reply_to_small_talk(text).startswith("I steer the camera")
+
+
+@pytest.mark.parametrize("text", ["where are you?", "what are those?", "who is there?"])
+def test_other_questions_ask_for_something(text: str) -> None:
+    assert not reply_to_small_talk(text)
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("who is he?", "people's names"),
+        ("who's that woman over there?", "people's names"),
+        ("where is she heading?", "going"),
+        ("where's the tractor going?", "going"),
+    ],
+)
+def test_what_no_picture_shows_is_said(text: str, expected: str) -> None:
+    assert expected in why_unknowable(text)
+
+
+@pytest.mark.parametrize("text", ["who is wearing a hat?", "where is the tractor?", "who is the tallest?"])
+def test_what_a_picture_shows_is_looked_up(text: str) -> None:
+    assert not why_unknowable(text)

@@ -11,6 +11,7 @@ from scope_ptz.planner.grammar.parsing.parts.courtesy import is_polite
 from scope_ptz.planner.grammar.parsing.parts.statements import is_comment, is_event, is_statement
 from scope_ptz.planner.plan import plan
 
+NOTHING_LEFT = "All right, I do nothing. What shall I do instead?"
 PRESETS = ("main-gate", "yard", "helipad")
 
 
@@ -111,9 +112,27 @@ def test_statements_that_take_a_command_back_are_not_ignored(statement: str) -> 
     assert (planned.calls, planned.clarification) == ((), "Shall I do that, or not?")
 
 
-@pytest.mark.parametrize("words", ["don't", "actually don't", "no need", "don't bother", "no hang on", "hold on", "not yet"])
-def test_words_that_take_a_command_back_are_not_ignored(words: str) -> None:
+@pytest.mark.parametrize(
+    ("words", "question"),
+    [
+        ("don't", NOTHING_LEFT),
+        ("actually don't", NOTHING_LEFT),
+        ("no, don't do that", NOTHING_LEFT),
+        ("oh wait, stay where you are", NOTHING_LEFT),
+        ("don't bother", NOTHING_LEFT),
+        ("no need", "Shall I do that, or not?"),
+        ("no hang on", "Shall I do that, or not?"),
+        ("hold on", "Shall I do that, or not?"),
+        ("not yet", "Shall I do that, or not?"),
+    ],
+)
+def test_words_that_take_a_command_back_are_not_ignored(words: str, question: str) -> None:
     planned = plan(f"go home, {words}", PRESETS)
+    assert (planned.calls, planned.clarification) == ((), question)
+
+
+def test_it_is_asked_which_of_several_commands_are_taken_back() -> None:
+    planned = plan("pan left 20 and zoom in, no, don't", PRESETS)
     assert (planned.calls, planned.clarification) == ((), "Shall I do that, or not?")
 
 

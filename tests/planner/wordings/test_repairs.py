@@ -141,3 +141,42 @@ def test_words_that_introduce_a_correction_do_not_take_it_back(instruction: str,
 )
 def test_the_same_words_at_the_end_are_asked_about(instruction: str) -> None:
     assert calls(instruction) is None
+
+
+def zoom(factor: float) -> tuple[str, dict[str, Any]]:
+    return ("adjust_ptz", {"zoom_factor": factor})
+
+
+@pytest.mark.parametrize(
+    ("instruction", "expected"),
+    [
+        ("tilt up a bit... no, down a bit", tilt(-5)),
+        ("right a little - sorry, left a little", pan(-5)),
+        ("zoom out a bit, no, in a bit", zoom(1.25)),
+        ("zoom in twice, sorry, only once", zoom(2)),
+        ("pan left 40... less, say 15", pan(-15)),
+        ("pan left 40 degrees. That's too far, make it 15", pan(-15)),
+        ("zoom in 5x, too much, 3x", zoom(3)),
+        ("tilt down 12. No, left 7", pan(-7)),
+        ("pan left 12, sorry, up 7", tilt(7)),
+        ("follow the white van, sorry, the green one", ("track_object", {"description": "green van", "duration_s": 10})),
+        ("zoom in on the tall crane... no, the small one", ("zoom_to_object", {"description": "small crane"})),
+        ("count the empty barrows, no, the full ones", ("count_objects", {"description": "full barrows", "view": "current"})),
+    ],
+)
+def test_the_second_half_of_a_message_replaces_the_first(instruction: str, expected: tuple[str, dict[str, Any]]) -> None:
+    assert calls(instruction) == [expected]
+
+
+@pytest.mark.parametrize(
+    "instruction",
+    [
+        "pan right 30, less, say 45",
+        "pan right 30. Too much, 10",
+        "zoom in on the boat shed, no, the black one",
+        "zoom in on the red boat, no, the left one",
+        "pan left 20 and tilt up 10, no, right 5",
+    ],
+)
+def test_a_second_half_that_does_not_fit_is_asked_about(instruction: str) -> None:
+    assert calls(instruction) is None

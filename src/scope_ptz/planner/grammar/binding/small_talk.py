@@ -53,6 +53,8 @@ _REJECTING = (
 _RADIO_CHECK = "(FILLER|COMMA|DASH|CAMERA)* (radio|comms|mic|sound) check (over|FILLER|COMMA|STOP|QUESTION)*"
 
 _RECEIVING = "Receiving you. Tell me where to look, or ask what is in view."
+_WHO_ARE_YOU = "(FILLER|AND|COMMA)* (who|what) BE (you|SELF) (exactly|actually|FILLER)* (STOP|QUESTION)*"
+_INTRODUCTION = 'I steer the camera and answer questions about what it sees, such as "how many people are there?".'
 _WELCOME = "You're welcome."
 _THANK_YOU = "Thank you. Tell me when you want to see something else."
 _WELL = 'I am well, thank you. Tell me where to look, or ask what is in view, for example: "how many people are there?".'
@@ -80,6 +82,8 @@ def reply_to_small_talk(instruction: str) -> str:
         return _NOT_MOVING
     if full_match(_RADIO_CHECK, lexemes):
         return _RECEIVING
+    if full_match(_WHO_ARE_YOU, lexemes) and any(x.word == "you" for x in lexemes):
+        return _INTRODUCTION
     sentences = _split(lexemes)
     if len(sentences) > 1 and full_match(_NO_THANKS, sentences[0]):  # "no thanks, that's all"
         sentences = [*sentences[1:], [x for x in sentences[0] if x.has("FILLER")]]

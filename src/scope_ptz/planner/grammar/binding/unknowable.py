@@ -30,10 +30,16 @@ _COMING = (
     r"|how long (MODAL|will|'ll) _+"
 )
 
+_WHO = f"{_LEAD} who (BE|'s) (that|this|he|she|they|those|these|DET) (?P<person>(FREE){{0,2}}) (there|over_there)?"
+_GOING = (
+    f"{_LEAD} where (BE|'s) (PRON|it|he|she|they|that|this|DET FREE{{1,3}}) (CARRY-ING|going|heading|headed|off|bound) (to|FILLER)*"
+)
+
 _OF_CLOCKS = frozenset({"time", "day", "date", "year"})
 
 _OWNERS = "A picture does not show who owns something. If there is writing on it, I can read that."
 _NAMES = "I cannot know people's names. If there is something with a name on it in view, such as a badge, I can read that."
+_GOALS = 'I cannot tell where somebody or something is going. I can follow it if you tell me to, for example: "follow the van".'
 _TIMES = "I cannot know when something will happen. If there is a timetable or a departure board in view, I can read that."
 _CLOCKS = "I have no clock or calendar of my own. If there is a clock in view, ask me what time it shows."
 
@@ -47,6 +53,10 @@ def why_unknowable(instruction: str) -> str:
         return _OWNERS
     if full_match(_COMING, lexemes):
         return _TIMES
+    if full_match(_GOING, lexemes):
+        return _GOALS
+    if (match := full_match(_WHO, lexemes)) is not None:
+        return _NAMES if _is_person(match["person"]) else ""
     if (match := full_match(_NAMING, lexemes)) is not None:
         owner = next((match[name] for name in ("owner", "owner2", "called") if name in match.names and match[name]), ())
         return _NAMES if _is_person(owner) else ""

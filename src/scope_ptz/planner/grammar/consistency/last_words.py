@@ -28,6 +28,11 @@ _AMOUNT = (
 )
 """An amount that changes the one that was said."""
 
+_WAS_TOO_MUCH = "(that|it|this) (was|were) (LITTLE|LOT|way|far)* too (much|far|close|near|tight|LOT|CLOSER|TIGHT)"
+"""Too much of an earlier move. Before it, "zoom out" and "go back" are the remedy: "zoom out, that was too much"."""
+
+_REMEDY = ("OUT", "WIDEN", "DECREASE", "BACK", "UNDO")
+
 _NOT_SO = "not (so|that) (ADVERB|LOT|FREE|CLOSER|WIDER|WIDE|TIGHT)"
 _TOO = "(FILLER|LITTLE|LOT)* too (?P<much>far|LOT|FREE|UP|DOWN|IN|OUT|CLOSER|WIDER|WIDE|TIGHT)"
 _TOO_CLOSE, _TOO_WIDE = frozenset({"close", "tight", "near", "narrow", "big"}), frozenset({"wide", "small"})
@@ -75,6 +80,8 @@ def unclear_last_words(text: str, presets: tuple[str, ...]) -> str | None:
         return None
     if full_match(_QUOTED, lexemes):
         return _quoted(text, lexemes)
+    if _is_remedy(lexemes):
+        return None
     for pattern in _ANYWHERE:
         if (found := search(f"(?P<words>{pattern})", lexemes)) is not None:
             return _quoted(text, found["words"])
@@ -83,6 +90,14 @@ def unclear_last_words(text: str, presets: tuple[str, ...]) -> str | None:
         last -= 1
     start = next((i for i in range(last - 1, 0, -1) if lexemes[i].has(*_PAUSES) and _changes(lexemes[:i], lexemes[i:last])), None)
     return None if start is None else _quoted(text, lexemes[start + 1 : last])
+
+
+def _is_remedy(lexemes: Sequence[Lexeme]) -> bool:
+    """Return whether lexemes are one command that lessens, and the reason for it: "zoom out, that was too much"."""
+    match = full_match(
+        f"(?P<command>((?!COMMA|STOP|AND|THEN) _){{1,8}}) (COMMA|STOP|DASH) {_WAS_TOO_MUCH} {_CLOSERS} STOP?", lexemes
+    )
+    return match is not None and any(x.has(*_REMEDY) for x in match["command"]) and not any(x.has("NUM") for x in match["command"])
 
 
 def _changes(before: Sequence[Lexeme], end: Sequence[Lexeme]) -> bool:

@@ -36,6 +36,7 @@ _FIRST_WORDS = (
 _STATEMENTS = (
     re.compile(
         r"\b(?:nobody|no one|we|i|you|he|they)\b[^.;?!]{0,20} (?:are|is|am|was|were)(?: not|n['’]t)? allowed to\b"
+        r"|\b(?:nobody|no one) (?:is|was) allowed\b"
         r"|\bnot to be (?:moved|touched|used|turned|disturbed|operated)\b"
         r"|\bmust(?:n['’]t| not| never) (?:do (?:this|that|it|so)|move|touch (?:it|the camera)|use (?:it|the camera))\b"
         r"|\b(?:i|we) (?:take|took) (?:that|it|this) back\b"

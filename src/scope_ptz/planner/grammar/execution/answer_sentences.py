@@ -10,7 +10,7 @@ from scope_ptz.builtin_names import GROUND_TRUTH
 from scope_ptz.english.grammar.common_nouns import is_common_noun
 from scope_ptz.english.grammar.lexicon import lexicon
 from scope_ptz.english.nouns import UNCOUNTABLE, plural_noun
-from scope_ptz.english.numerals import cardinal
+from scope_ptz.english.numerals import cardinal, number_word
 from scope_ptz.planner.grammar.answerable import answerable_questions
 from scope_ptz.planner.grammar.execution.visible_counts import is_complete
 from scope_ptz.planner.grammar.instruction_tree import (
@@ -232,7 +232,9 @@ def chosen_text(description: str, matches: int, chosen: str) -> str:
     description, _ = without_number(description)
     name = chosen.removeprefix("The ").removeprefix("the ")
     name = "" if name.lower() == noun(description, 1).lower() else name  # "white van" does not say which of the white vans
-    return f"one of the {matches} {noun(description, matches)} in view{f', the {name}' if name else ''}"
+    things = noun(description, matches)
+    number = number_word(matches) if things[:1].isdigit() and matches < 100 else str(matches)  # "one of the two 5 mph signs"
+    return f"one of the {number} {things} in view{f', the {name}' if name else ''}"
 
 
 def without_number(description: str) -> tuple[str, int | None]:

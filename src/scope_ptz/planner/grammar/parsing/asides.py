@@ -13,7 +13,7 @@ from scope_ptz.planner.grammar.parsing.parts.clause import DIRECTIONS, VERBS, Cl
 from scope_ptz.planner.grammar.parsing.parts.courtesy import is_polite
 from scope_ptz.planner.grammar.parsing.parts.noun_phrases import thing_of
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start, search
-from scope_ptz.planner.grammar.parsing.parts.statements import is_comment, is_statement, without_future_time
+from scope_ptz.planner.grammar.parsing.parts.statements import is_comment, is_past_event, is_statement, without_future_time
 from scope_ptz.planner.grammar.parsing.segments.clause_starts import STATEMENT
 
 _WISH = (
@@ -66,6 +66,11 @@ _TAKEN_BACK = (
 )
 """Words after a command that take it back, as in "no, don't", "no need" and "hang on"."""
 
+_PLAINLY_TAKEN_BACK = (
+    "(no|nah|nope|wait|oh|ah|hang_on|hold_on|actually|please|BUT|FILLER|COMMA|DASH|STOP)* "
+    "(((DOV|do) not|do_not|(?!no_more) NEGATED) (do (it|that))?|do_not_bother|no_need) (please|FILLER|after all)*"
+)
+
 _MOVE_AT_THE_END = (
     f"COMMA (NOW|FILLER|AND|BUT|COMMA)* ({'|'.join(DIRECTIONS)}|IN|OUT|CLOSER|WIDER) (LITTLE|LOT|LIMIT|MORE|FILLER)* (COMMA|\\Z)"
 )
@@ -108,6 +113,11 @@ def is_withdrawal_statement(clause: Clause) -> bool:
 def takes_back(clause: Clause) -> bool:
     """Return whether a clause after a command takes it back: "... no, don't", "... no need", "... hang on"."""
     return not clause.is_question and full_match(_TAKEN_BACK, clause.lexemes) is not None
+
+
+def plainly_takes_back(clause: Clause) -> bool:
+    """Return whether a clause says that a command must not be carried out: "no, don't", unlike "hang on" and "not yet"."""
+    return full_match(_PLAINLY_TAKEN_BACK, clause.lexemes) is not None
 
 
 def drops_everything(clause: Clause) -> bool:
@@ -200,8 +210,8 @@ def elliptical_condition(source: Source, clause: Clause, after: Clause | None) -
             return None  # "see a van anywhere? Check all around"
         thing = thing_of(source, match["thing"]) if match["thing"] else Thing("people")
         return Seen(thing) if thing is not None and thing.text else None
-    if lexemes[0].has("SOMEONE") and len(lexemes) > 2 and lexemes[1].has("TELL-ED", "TELL-S"):
-        return None  # "somebody said they saw a fox"
+    if lexemes[0].has("SOMEONE") and ((len(lexemes) > 2 and lexemes[1].has("TELL-ED", "TELL-S")) or is_past_event(lexemes)):
+        return None  # "somebody said they saw a fox", "someone rang"
     if lexemes[0].has("SOMEONE", "NOONE") or (lexemes[0].word == "no" and clause.link != ","):
         return condition_of(source, lexemes)
     return None

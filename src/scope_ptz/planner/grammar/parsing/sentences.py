@@ -34,6 +34,7 @@ from scope_ptz.planner.grammar.parsing.asides import (
     is_courtesy_condition,
     is_necessity_condition,
     is_withdrawal_statement,
+    plainly_takes_back,
     takes_back,
 )
 from scope_ptz.planner.grammar.parsing.branches import bound_of
@@ -72,6 +73,9 @@ _IF_THERE_IS = frozenset({
 _WHICH_FIRST = Unclear("Which of the two shall I do first?")
 _IN_ANY_CASE = Unclear("Shall I do the last part in any case, or only if I do not do the first?")
 _WITHDRAWN = Unclear("Shall I do that, or not?")
+_NOTHING_LEFT = Unclear("All right, I do nothing. What shall I do instead?")
+"""The answer to a single command that is plainly taken back: "follow the bus. Actually, don't"."""
+
 _SAME_MOVE = Unclear("Is that part of the same move, or another one? Please give each move its amount.")
 
 
@@ -101,7 +105,7 @@ class SentenceReader(TourReader):
         clause = self._take()
         match clause.marker:
             case "" if self._takes_back(clause):
-                return [Linked(clause.link, _WITHDRAWN)]
+                return [Linked(clause.link, _NOTHING_LEFT if self._takes_all_back(clause) else _WITHDRAWN)]
             case "" if adds_nothing(clause, self._peek(), self.last_step, is_first=self.next_index == 1):
                 return []
             case "":
@@ -133,6 +137,11 @@ class SentenceReader(TourReader):
         after = self._peek()
         is_last = self.next_index > 1 and (after is None or after.link == "." or drops_everything(clause))
         return (len(self.clauses) > 1 and is_withdrawal_statement(clause)) or (is_last and takes_back(clause))
+
+    def _takes_all_back(self, clause: Clause) -> bool:
+        """Return whether a clause plainly takes back the only command before it, and nothing follows."""
+        is_only = len(self.clauses) == 2 and self.next_index == 2 and not self.clauses[0].marker
+        return is_only and plainly_takes_back(clause)
 
     def _follows_search(self) -> bool:
         """Return whether the previous clause looks for something: "until you see a van", "find the van"."""

@@ -21,6 +21,13 @@ _ONLY_PAST = frozenset({
     "gave", "ate", "froze", "stole", "threw", "woke", "rode", "swam", "forgot", "knew", "shook",
 })  # fmt: skip
 """Past forms that are not participles, so they follow a subject: "the shouting came from behind", unlike "the car parked here"."""
+_INTRANSITIVE_PAST = frozenset({
+    "shouted", "yelled", "screamed", "coughed", "sneezed", "laughed", "giggled", "smiled", "waved", "nodded", "winked", "knocked",
+    "complained", "moaned", "grumbled", "phoned", "asked", "wondered", "insisted", "barked", "honked", "hooted", "beeped", "buzzed",
+    "whistled", "fainted", "collapsed", "slipped", "tripped", "stumbled", "arrived", "departed", "vanished", "disappeared",
+    "appeared", "happened", "whispered", "apologised", "apologized", "replied", "swore", "radioed", "emailed", "texted", "panicked",
+})  # fmt: skip
+"""Past forms of verbs without an object, and of verbs of speaking, which are no participles after a noun: "my boss asked"."""
 _ACTIVITIES = frozenset({
     "got", "getting", "hearing", "missing", "losing", "having", "expecting",
 })  # fmt: skip
@@ -52,6 +59,12 @@ def without_future_time(lexemes: Sequence[Lexeme]) -> tuple[Lexeme, ...]:
     """Strip a future time such as "in five minutes" from the end of lexemes: "we start loading in five minutes"."""
     match = full_match("(?P<body>_+) in (AMOUNTISH|DET)* (NUM|FRACTION|DET)+ (MINUTES|HOURS) (FILLER)*", lexemes)
     return tuple(match["body"]) if match else tuple(lexemes)
+
+
+def is_past_event(lexemes: Sequence[Lexeme]) -> bool:
+    """Return whether lexemes only say what somebody did: "someone rang", unlike "someone is there" and "someone trapped"."""
+    verb = next((x for x in lexemes[1:] if not _is_adverb(x)), None)
+    return verb is not None and _is_only_past(verb) and is_statement(lexemes)
 
 
 def is_comment(lexemes: Sequence[Lexeme]) -> bool:
@@ -129,14 +142,16 @@ def _is_predicate(lexemes: Sequence[Lexeme], start: int) -> bool:
         return True
     after = lexemes[verb + 1] if verb + 1 < len(lexemes) else None
     form = verb_form(lexeme.word)
+    if _is_only_past(lexeme):
+        return True
     if start == 1 and _is_pronoun(subject):
         return (form == "base" and subject.word in _PLURAL_PRONOUNS and subject.word != "you") or form in {"third person", "past"}
     if form == "third person":
         is_only_verb = "NOUN" not in parts_of_speech(lexeme.word)
         is_followed = after is not None and (after.has("DET", "PRON", "SELF") or after.word == "to")
         return is_only_verb or is_followed or (after is not None and verb_form(after.word) == "participle")
-    if lexeme.word in _ONLY_PAST:
-        return True
+    if form == "past" and after is None and _is_possessive(lexemes[0]):
+        return True  # "our manager queried"
     if (
         form == "base"
         and subject.word.endswith("s")
@@ -145,6 +160,10 @@ def _is_predicate(lexemes: Sequence[Lexeme], start: int) -> bool:
     ):
         return after is not None and after.has("DET", "PRON", "SELF", "ANOTHER")  # "my grandkids love that"
     return form == "past" and after is not None and after.has("DET", "PRON", "SELF", "SOMEONE")
+
+
+def _is_only_past(lexeme: Lexeme) -> bool:
+    return lexeme.word.split("_")[0] in _ONLY_PAST or lexeme.word in _INTRANSITIVE_PAST
 
 
 def _is_adverb(lexeme: Lexeme) -> bool:

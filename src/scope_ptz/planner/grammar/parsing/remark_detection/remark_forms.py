@@ -64,10 +64,37 @@ EXEMPT = re.compile(
     r"|the (?:lower|upper|left|right|bottom|top) (?:part|half|side|edge) of (?:the|my) (?:picture|screen|view|frame) "
     r"is (?:nothing but|all"
     r"|just|only|mostly|full of) [\w ]+"
-    r"|can you believe (?:it|that)|(?:oh |well )*(?:is|are)n['’]t (?:it|that|he|she|they) \w+",
+    r"|can you believe (?:it|that)|(?:oh |well )*(?:is|are)n['’]t (?:it|that|he|she|they) \w+"
+    r"|(?:i|we) (?:really |quite |do )?(?:like|liked|love|loved) (?:this|that) one(?: (?:a lot|very much|too))?"
+    r"|(?:this|that) one(?:['’]s| is| looks) (?:\w+ )?(?:nice|lovely|good|great|pretty|beautiful|interesting|cool|funny)"
+    r"|the [a-z]+(?: [a-z]+)? (?:is|are) (?:still |all |too |so |completely |partly |half |mostly )*"
+    r"(?:hidden|covered|blocked|obscured|cut off|out of (?:view|sight|frame|shot|(?:the )?picture)|dark|blurred|blurry|tiny)",
     re.IGNORECASE,
 )
-"""Remarks with words that would ask for something in other texts."""
+"""Remarks with words that would ask for something in other texts, such as "one" or a word of a preset's name."""
+
+RETURN = re.compile(
+    r"(?:(?:please|ok|okay|no|now|just),? )*(?:(?:go|come|move|turn|take me|take us) )?"
+    r"(?:back\b|undo\b|return\b|(?:to )?the (?:previous|last) view)",
+    re.IGNORECASE,
+)
+"""The beginning of a command to go back to an earlier view."""
+
+RETURN_REASON = re.compile(
+    r"(?:that|it|that one|that view|the (?:other|last|previous|first) (?:one|view)) "
+    r"(?:was|is|looked) (?:much |far |a lot |a bit |way )?"
+    r"(?:better|nicer|clearer|prettier)"
+    r"|(?:i|we) (?:really |quite |do )?(?:like|liked|love|loved|prefer|preferred) (?:that|it)(?: (?:one|view))?"
+    r"(?: (?:a lot |much )?(?:better|best|more))?",
+    re.IGNORECASE,
+)
+"""Reasons for going back, which in other places may ask for something else: "that was better"."""
+
+
+def gives_reason_for_return(said: str, reason: str) -> bool:
+    """Return whether a text goes back to an earlier view, and the words after it only say that it was better."""
+    return RETURN.match(said.strip()) is not None and RETURN_REASON.fullmatch(reason.strip(" ,.;!")) is not None
+
 
 _PAST = r"(?:panned|tilted|zoomed|swung|turned|moved|swivelled|rotated|pointed|aimed|went|used to (?:pan|tilt|zoom|turn|move))"
 _NO_REQUEST = r"(?!.*\b(?:please|should|must|shall|ought|want|need|can you|could you|would you|let['’]?s)\b)"

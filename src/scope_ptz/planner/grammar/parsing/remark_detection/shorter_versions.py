@@ -17,7 +17,9 @@ from scope_ptz.planner.grammar.parsing.remark_detection.remark_forms import (
     NOUN_SUBJECT,
     REFUSAL,
     REPORT,
+    RETURN,
     SUBJECT,
+    gives_reason_for_return,
 )
 from scope_ptz.planner.grammar.parsing.remark_detection.surrounding_remarks import (
     AMOUNT,
@@ -65,6 +67,9 @@ UNFINISHED = re.compile(
 )
 """The end of a text that is incomplete without the words after it: "pan right until" before "something moves"."""
 
+_FINISHED = re.compile(r"\b(?:(?:zoom|right|way|further|closer|a bit) in|where (?:we|i|it) (?:was|were))\W*$", re.IGNORECASE)
+"""Exceptions, if the words after them are a remark in a known form: "zoom in, I like this one"."""
+
 _REFERENCE = re.compile(r"\b(?:it|its|they|their|them|him|his|her|he|she|those|these|ones?|both|same)\b", re.IGNORECASE)
 _INTERJECTION = re.compile(r"^(?:oo+h|oh|ah|argh|well|hey|right|ok|okay|now)\b,? (?!no\b|wait\b)", re.IGNORECASE)
 _REPEATS = re.compile(r"\b(?:back|again|same|that much|as before|undo|twice that|half that)\b", re.IGNORECASE)
@@ -89,7 +94,7 @@ def shorter_versions(text: str, presets: tuple[str, ...]) -> Iterator[str]:
     versions = sorted(((begin, end) for begin in begins for end in ends if begin < end), key=lambda cut: cut[0] - cut[1])
     for begin, end in versions[:_MAX_VERSIONS]:
         kept = text[begin:end]
-        if kept != text and len(kept.split()) >= _MIN_WORDS:
+        if kept != text and (len(kept.split()) >= _MIN_WORDS or RETURN.fullmatch(kept)):
             yield kept + ("?" if text[end : end + 1] == "?" else "")
 
 
@@ -109,7 +114,9 @@ def _ends(text: str, presets: tuple[str, ...]) -> Iterator[int]:
     """Yield each index at which a text may end because only remarks follow."""
     for match in _BOUNDARY.finditer(text):
         said, tail = text[: match.start()], text[match.end() :].rstrip(" .!?")
-        if UNFINISHED.search(said) is None and is_remark(tail, presets) and not is_amount(said, tail):
+        is_known = EXEMPT.fullmatch(tail) is not None or gives_reason_for_return(said, tail)
+        is_whole = UNFINISHED.search(said) is None or (is_known and _FINISHED.search(said) is not None)
+        if is_whole and (is_known or is_remark(tail, presets)) and not is_amount(said, tail):
             yield match.start()
     for match in _PURPOSE.finditer(text):
         tail = text[match.end() :]

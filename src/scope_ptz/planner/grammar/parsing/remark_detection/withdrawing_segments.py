@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from scope_ptz.planner.grammar.lexing.lexer import lexemes_of
 from scope_ptz.planner.grammar.parsing.remark_detection.features import statement_features_of
 from scope_ptz.planner.grammar.parsing.remark_detection.model import withdrawal_model
+from scope_ptz.planner.grammar.parsing.remark_detection.remark_forms import gives_reason_for_return
 from scope_ptz.planner.grammar.parsing.remark_detection.segments import segments_of
 from scope_ptz.planner.grammar.parsing.remark_detection.shorter_versions import MAX_SHORTENED_CHARS
 
@@ -72,6 +73,8 @@ def withdrawing_segments(text: str, presets: tuple[str, ...]) -> Iterator[Withdr
     likeliest = sorted((index for index, value in log_odds.items() if value > _MIN_LOG_ODDS), key=lambda index: -log_odds[index])
     for index in likeliest[:_MAX_SEGMENTS]:
         segment, is_last = segments[index], index + 1 == len(segments)
+        if gives_reason_for_return(text[: segment.start], segment.text):
+            continue
         following = len(text) if is_last else segments[index + 1].start
         before = () if is_last else tuple(text[: earlier.end] for earlier in reversed(segments[:index]))
         yield WithdrawingSegment(segment.text, (text[: segment.start] + text[following:]).strip(" ,;:-–—"), before)

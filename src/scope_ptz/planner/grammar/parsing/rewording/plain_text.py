@@ -14,12 +14,13 @@ from scope_ptz.planner.grammar.parsing.rewording.text_moves import MOVES
 from scope_ptz.planner.grammar.parsing.rewording.text_places import with_places_named
 from scope_ptz.planner.grammar.parsing.rewording.text_questions import QUESTIONS, with_question_apart, with_separate_questions
 from scope_ptz.planner.grammar.parsing.rewording.text_remarks import REMARKS
+from scope_ptz.planner.grammar.parsing.rewording.text_repairs import REPAIRS
 from scope_ptz.planner.grammar.parsing.rewording.text_spelling import SPELLING, WORDS
 from scope_ptz.planner.grammar.parsing.rewording.text_views import VIEWS
 from scope_ptz.planner.grammar.parsing.rewording.text_withdrawals import WITHDRAWALS, without_part_left_out
 
 _STANDARD = rewordings((*SPELLING, *CONDITIONS, *COURTESIES))
-_ASIDES = rewordings((*WITHDRAWALS, *REMARKS))
+_ASIDES = rewordings((*REPAIRS, *WITHDRAWALS, *REMARKS))
 _WORDINGS = rewordings((*MOVES, *VIEWS, *QUESTIONS, *COUNTS))
 _NONSTANDARD = re.compile(rf"\b(?:{'|'.join(WORDS)})\b['’]?(?!\w)", re.IGNORECASE)
 _LONG_WORD = re.compile(r"\b[a-z]{5,}\b")
