@@ -43,7 +43,6 @@ NEVER_A_MOVE = [
     "pause",
     "go to the gate, no the highway, no forget it, I don't know where I want it yet",
     "go to the gate, forget it",
-    "zoom in on the van, I mean the one on the left",
     "no photos",
     "take no photos",
     "pan left 20 and at the same time pan right 20",

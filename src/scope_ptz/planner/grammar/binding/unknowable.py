@@ -56,7 +56,8 @@ def why_unknowable(instruction: str) -> str:
     if full_match(_GOING, lexemes):
         return _GOALS
     if (match := full_match(_WHO, lexemes)) is not None:
-        return _NAMES if _is_person(match["person"]) else ""
+        is_ranked = any(x.word.endswith("est") for x in match["person"])  # "who is the tallest person?" can be seen
+        return _NAMES if _is_person(match["person"]) and not is_ranked else ""
     if (match := full_match(_NAMING, lexemes)) is not None:
         owner = next((match[name] for name in ("owner", "owner2", "called") if name in match.names and match[name]), ())
         return _NAMES if _is_person(owner) else ""

@@ -36,7 +36,7 @@ def _named(text: str, before: Sequence[Lexeme], after: Sequence[Lexeme]) -> str 
     ones = [x for x in new if x.word in {"one", "ones"}]
     if len(ones) != 1 or not thing or not any(x.has(*_LOOKS) for x in old) or any(x.word in _REFERRING for x in new):
         return None
-    if not new[0].has("DET") or not is_noun_phrase(new):
+    if not new[0].has("DET") or not is_noun_phrase(new) or any(x.has("PRESET") for x in thing):
         return None
     kind, one = _kind(thing), ones[0]
     if not kind or (one.word == "ones" and not is_plural(kind)):
