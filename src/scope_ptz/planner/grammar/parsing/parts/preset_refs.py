@@ -22,9 +22,15 @@ PLACE = (
 """A reference to a preset that the camera has, or to its number."""
 
 
+_SAVED_BY_US = (
+    r"((that|which)? SELF (HAVEV|have)? (got|already|ADVERB)* (saved|stored|programmed|set_up|know|save-ED|TAKE-ED|memorised|"
+    r"memorized|(in|on|stored|saved)* (memory|file)))?"
+)
+"""Words which say that the camera knows the positions: "the places you've got saved"."""
+
 EVERY_PLACE = (
     r"((DET)* (EVERY|both) (of)? (DET|EVERY|SELF|saved|stored|available|different|of|single|other|known|NUM)* "
-    r"(PRESETNOUN|one)|(DET|SELF|saved|stored|available|different|NUM)* (presets|positions|views|bookmarks|"
+    rf"(PRESETNOUN|one) {_SAVED_BY_US}|(DET|SELF|saved|stored|available|different|NUM)* (presets|positions|views|bookmarks|"
     r"viewpoints|waypoints))"
 )
 

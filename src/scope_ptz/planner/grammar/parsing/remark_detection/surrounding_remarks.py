@@ -82,6 +82,7 @@ _HARMLESS = re.compile(
     r"|\b(?:i|we) (?:can['’]?t|cannot|could not|couldn['’]?t) (?:tell|make out|see|work out|read)"
     r"(?: from here)? (?:if|whether|what|which|who)\b"
     r"|\b(?:got|have|had) (?:\w+ ){1,4}asking (?:me |us )?about\b"
+    r"|\b(?:wr[io]te|writing|written|not(?:e|ed|ing)|jott?(?:ed|ing)?) (?:it|them|that|this|those|any|all of (?:it|them)) down\b"
     r"|\b(?:pan|tilt|zoom) (?:smoothness|speed|accuracy|performance|response|motors?|gears?|mechanism|backlash)\b"
     r"|\b(?:its|his|her|their) (?:left|right)[- ](?:turn|arm|leg|foot|wheel|wing|side|flank|indicator|headlight)s?\b"
     r"|\bi (?:just )?want(?:ed)? the (?:whole )?(?:lot|thing|works)\b|\bunder the camera\b"

@@ -19,6 +19,7 @@ _BEFORE_ADDRESS = (
 _TIME = r"(?:\d+(?:\.\d+)?|an?|half an?|[a-z]+(?:-[a-z]+)?) ?(?:s|secs?|seconds?|mins?|minutes?)(?: and a half)?"
 
 COURTESIES = (
+    (r"(?<!wait)(?<!waiting)(?<!left)(?<!ready) for (?:me|us) (?=(?:at|on|in|by|outside) (?:the|each|every|both)\b)", " "),
     (rf"^(?:auto[- ]?)?tracking(?: test| check)?[,:] ({_TIME})[,:] (?=the |an? |that |this )([^.;]+?)\W*$", r"track \2 for \1"),
     (
         rf"^(?:the )?duration(?: is|:)? ({_TIME})[.,;:] (?:please )?((?:follow|track|trail|tail|shadow|keep|stay)\b[^.;]*?)\W*$",
