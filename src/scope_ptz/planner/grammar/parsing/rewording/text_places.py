@@ -208,6 +208,10 @@ def with_places_named(text: str, presets: tuple[str, ...]) -> str:
             rf"|(?:show (?:me|us)|go to|bring up|take (?:me|us) to) (?:that one|it|there))\b",
             lambda match: match[0] if asks_for_something(match["news"], ()) else f"go to the {match['place']}",
         ),
+        (
+            rf"^(?:the )?({names}) ([a-z]+)(?:,|\.|:| -) ((?:{_STATES}) or (?:{_STATES}))\W*$",
+            lambda match: f"{'are' if is_plural(match[2]) else 'is'} the {match[2]} at the {match[1]} {match[3]}?",
+        ),
         (rf"\b(?:snap|take|grab|get) (?:me )?one of (?:the )?({names})\b", r"take a picture of the \1"),
         (rf"\bsee (?:the )?({names}) (?:car ?park|parking|area|place|side|bit)\b", r"see the \1"),
     ):
