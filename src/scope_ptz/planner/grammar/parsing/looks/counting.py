@@ -166,10 +166,10 @@ def _counted(
         return Unclear("I cannot wait. Shall I count them now?")  # "count the vans in ten minutes"
     rest = trimmed(rest, "FILLER", "COMMA", "ALSO")
     if (both := full_match(_PLACED_BETWEEN, rest)) is not None:
-        things = things_of(source, both["first"]), things_of(source, both["second"])
+        first, second = things_of(source, both["first"]), things_of(source, both["second"])
         place = place_of(source, both["place"])
-        if place is not None and all(things) and is_plural(both["second"][-1].word):
-            return AtPlaces((place,), (Count((*(things[0] or ()), *(things[1] or ())), view),))
+        if place is not None and first and second and is_plural(both["second"][-1].word):
+            return AtPlaces((place,), (Count((*first, *second), view),))
     if source.has_moved and (turned := full_match("(?P<thing>_+) (over)? (on|in) (this|that) (SIDE|direction)", rest)) is not None:
         rest = turned["thing"]  # "turn around and count the tents on that side"
     while len(rest) > 1 and rest[-1].word in {"too", "as_well", "also", "total"}:

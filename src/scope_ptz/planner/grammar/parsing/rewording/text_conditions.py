@@ -21,7 +21,7 @@ _STATE = r"(wide open|open|shut|closed|ajar|empty|idle|unattended|still|unused|v
 CONDITIONS = (
     (
         r"^(if) (?:the )?((?!the |there|it|you|we|i |any|no |some|that|this|he |she |they )"
-        r"(?:(?!\b(?:is|are|was|were|has|have|can|look|looks|seems|stays)\b)[\w ])+?) "
+        r"(?:(?!\b(?:is|are|was|were|has|have|can|(?:look|seem|stay|stand|sit|lie|remain|hang)s?)\b)[\w ])+?) "
         r"(open|shut|closed|locked|unlocked|empty|full|blocked|clear|lit|occupied|flooded),? "
         r"(?=(?:then )?(?:take|pic|photo|snap|count|zoom|go|tell|report|pan|tilt)\b)",
         lambda match: f"{match[1]} the {match[2]} {'are' if is_plural(match[2].split()[-1]) else 'is'} {match[3]}, ",
