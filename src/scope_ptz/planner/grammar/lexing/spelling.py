@@ -78,7 +78,7 @@ def corrected_noun(word: str) -> str:
     """
     if is_english(word) or parts_of_speech(word) or verb_form(word) is not None:
         return word
-    if len(word) >= _MIN_NOUN_CHARS:
+    if len(word) >= _MIN_NOUN_CHARS - 1:  # a letter of a longer noun may be missing: "peple"
         things = {noun for noun in _nouns_for_things() if noun[0] == word[0] and _differs_by_a_slip(word, noun)}
         if len({singular(noun) for noun in things}) == 1:
             return max(things, key=lambda noun: (noun.endswith("s") == word.endswith("s"), noun))
@@ -103,8 +103,10 @@ def _differs_by_a_slip(word: str, noun: str) -> bool:
 @lru_cache(maxsize=1)
 def _nouns_for_things() -> frozenset[str]:
     """Return the longer nouns of one word for kinds of things, in the singular and the plural."""
-    nouns = [noun for noun in lexicon().concepts if noun.isalpha() and len(noun) >= _MIN_NOUN_CHARS]
-    return frozenset({*nouns, *map(plural_noun, nouns)})
+    nouns = [noun for noun in lexicon().concepts if noun.isalpha()]
+    longer = {form for noun in nouns if len(noun) >= _MIN_NOUN_CHARS for form in (noun, plural_noun(noun))}
+    irregular = {plural_noun(noun) for noun in nouns if plural_noun(noun).removesuffix("es").removesuffix("s") != noun}
+    return frozenset({*longer, *(noun for noun in irregular if len(noun) > _MIN_NOUN_CHARS and not noun.endswith("s"))})
 
 
 def _with_letters_swapped(word: str) -> list[str]:

@@ -145,6 +145,8 @@ def question_step(
         lexemes = lexemes[1:]
     if not lexemes:
         return None
+    if any(x.has("PRESETNOUN") for x in lexemes) and _is_followed_by_statement(lexemes):
+        raise NotUnderstoodError(lexemes)  # "tell me which views you have saved, I never wrote them down"
     scope: View | None = "full" if has_full_scope(lexemes) else view
     end = "?" if has_question_mark else ""
     if match := full_match(rf"(DESCRIBE|DESCRIBE-ING|list) {ME} (?P<rest>_*)", lexemes):

@@ -147,7 +147,7 @@ def close_up_step(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
             r"face|to|towards|toward|over to|over at|upon) (?P<thing>_+)"
         ),
         (
-            r"(TAKE|SHOW|CARRY|FIND|DET|AIM)? (me|us|SELF)* (DET|good|nice|proper|quick|much|tight|clear)* (close_up|"
+            r"(TAKE|SHOW|CARRY|FIND|DET|AIM)? (me|us|SELF)* (DET|good|nice|proper|quick|much|tight|clear|detailed)* (close_up|"
             r"CLOSER|(close|tight) PICTURE|close look|closer look|better look|good look|better view|look|tight "
             r"PICTURE|tighter PICTURE|"
             r"PICTURE|WIDER|closer view|view) (PICTURE|VIEWNOUN|look)? (of|at|on) (?P<thing>_+)"

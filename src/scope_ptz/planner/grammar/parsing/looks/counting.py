@@ -60,6 +60,11 @@ _WRITTEN = frozenset({
 _IN_ALL = "in_total|in total|altogether|in_all|in all|overall"
 
 
+_PLACED_BETWEEN = (
+    "(?P<first>FREE{1,3}) (at|in|on) (?P<place>(DET)? PRESET) COMMA? AND (?P<second>DET FREE{1,3}) (too|as_well|also)+"
+)
+"""Things at a preset, and more of them that are counted there too: "kids in the pool and the adults too"."""
+
 _WITH_PART = {
     "wear": "wearing",
     "have": "with",
@@ -160,6 +165,11 @@ def _counted(
     if full_match("_+ in (AMOUNTISH|DET)* NUM (MINUTES|HOURS)", rest):
         return Unclear("I cannot wait. Shall I count them now?")  # "count the vans in ten minutes"
     rest = trimmed(rest, "FILLER", "COMMA", "ALSO")
+    if (both := full_match(_PLACED_BETWEEN, rest)) is not None:
+        first, second = things_of(source, both["first"]), things_of(source, both["second"])
+        place = place_of(source, both["place"])
+        if place is not None and first and second and is_plural(both["second"][-1].word):
+            return AtPlaces((place,), (Count((*first, *second), view),))
     if source.has_moved and (turned := full_match("(?P<thing>_+) (over)? (on|in) (this|that) (SIDE|direction)", rest)) is not None:
         rest = turned["thing"]  # "turn around and count the tents on that side"
     while len(rest) > 1 and rest[-1].word in {"too", "as_well", "also", "total"}:

@@ -18,7 +18,7 @@ from scope_ptz.planner.grammar.instruction_tree import (
 )
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 from scope_ptz.planner.grammar.parsing.parts.clause import DIRECTIONS, Source, text_of
-from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, search
+from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start, search
 from scope_ptz.planner.grammar.parsing.parts.preset_refs import EVERY_PLACE, PLACE, place_of, places_of
 
 _GO = (
@@ -43,10 +43,10 @@ _RETURNING = frozenset(
 )
 
 _STORED = (
-    "(FILLER)* ((LISTING|TELL|READ)? (me|us|out)* (WHQ|DET|all|EVERY|HOWMANY)* PRESETNOUN (names)? "
+    "(FILLER)* ((LISTING|TELL|READ)? (me|us|out)* (WHQ|DET|all|EVERY|HOWMANY|named|preprogrammed|predefined)* PRESETNOUN (names)? "
     "(DOV|HAVEV|BE|MODAL|SELF|there|got|have|"
     "hold|holds|know|keep|been|so|far|save|saved|store|stored|set|set_up|up|programmed|loaded|available|in|on|DET|CAMERA|FILLER|this|"
-    "thing|system|unit|memory|box|rig|device|right|now|here|at|the|moment|to|choose|from|pick|disposal|my|our|(this|"
+    "thing|system|unit|memory|box|rig|device|right|now|here|at|the|moment|to|choose|from|pick|disposal|my|our|as PRESETNOUN|(this|"
     "(?!ANY)DET) FREE \\Z)*)"
 )
 """A question about the presets themselves: "presets?", "what views have we got saved on this thing?"."""
@@ -108,6 +108,8 @@ def go_step(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
 
 def listing_step(lexemes: Sequence[Lexeme]) -> Step | None:
     """Return the step of a clause that asks for a list of the presets; None for other clauses."""
+    if match_start("(FILLER|AND|THEN)* (?!LISTING|TAKE) (SWITCH|CARRY|SCAN) _* EVERY", lexemes):
+        return None  # "visit all the spots you have stored"
     if (
         full_match(
             (

@@ -22,9 +22,15 @@ PLACE = (
 """A reference to a preset that the camera has, or to its number."""
 
 
+_SAVED_BY_US = (
+    r"((that|which)? SELF (HAVEV|have)? (got|already|ADVERB)* (saved|stored|programmed|set_up|know|save-ED|TAKE-ED|memorised|"
+    r"memorized|(in|on|stored|saved)* (memory|file)))?"
+)
+"""Words which say that the camera knows the positions: "the places you've got saved"."""
+
 EVERY_PLACE = (
     r"((DET)* (EVERY|both) (of)? (DET|EVERY|SELF|saved|stored|available|different|of|single|other|known|NUM)* "
-    r"(PRESETNOUN|one)|(DET|SELF|saved|stored|available|different|NUM)* (presets|positions|views|bookmarks|"
+    rf"(PRESETNOUN|one) {_SAVED_BY_US}|(DET|SELF|saved|stored|available|different|NUM)* (presets|positions|views|bookmarks|"
     r"viewpoints|waypoints))"
 )
 
@@ -39,6 +45,12 @@ _STILL = re.compile(
 _PREPOSITIONS_OF_PLACES = frozenset(
     {"at", "in", "on", "inside", "of", "off", "into", "onto", "around", "round", "outside", "across", "down", "along", "over"}
 )
+_WAYS_IN = frozenset({
+    "gate", "gates", "door", "doors", "entrance", "exit", "entry", "access", "hatch", "ramp", "steps", "stairs", "barrier", "path",
+    "road", "shutter",
+})  # fmt: skip
+"""Things that are at the place to which they lead: "the gate to the yard"."""
+
 _IS = "(BE|LOOKSLIKE|looks|seems|gets)"
 
 
@@ -93,7 +105,8 @@ def place_asked_about(source: Source, lexemes: Sequence[Lexeme]) -> PresetRef | 
     if sum(x.preset == name.preset for x in lexemes_of(source.text, source.presets)) > 1:
         return None  # "count the vans at the yard and at the dock. How many more does the dock have?"
     before = [x for x in lexemes[: found[0]] if not x.has("DET") or x.has("PREP")]
-    if before and before[-1].has("PREP") and before[-1].word not in _PREPOSITIONS_OF_PLACES:
+    leads_there = len(before) > 1 and before[-1].word in {"to", "into"} and before[-2].word in _WAYS_IN
+    if before and before[-1].has("PREP") and before[-1].word not in _PREPOSITIONS_OF_PLACES and not leads_there:
         return None
     if before and before[-1].has("FREE") and lexemes[found[0] - 1] is before[-1]:
         return None  # "at Freight yard" is not the preset "yard"

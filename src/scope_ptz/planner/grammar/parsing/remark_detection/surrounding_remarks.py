@@ -13,7 +13,9 @@ from scope_ptz.planner.grammar.parsing.parts.statements import is_statement
 
 _REPORTING = "reckons?|says?|said|thinks?|rang|called|phoned|radioed|told|wants|wanted|keeps|lost|left|got|saw|heard|complained"
 _STATEMENT = re.compile(
-    r"(?:(?:i|someone|somebody|they|he|she) )?(?:left|lost|dropped|dumped) (?:it|them|my|the) .+|i(?:'ve| have) "
+    r"(?:(?:i|someone|somebody|they|he|she) )?(?:left|lost|dropped|dumped) (?:it|them|my|the) .+"
+    r"|(?:had|used|seen|borrowed) (?:it|them|him|her|one) .+"
+    r"|i(?:'ve| have) "
     r"(?:got )?to \w+ .+|(?:heard|saw|thought i (?:heard|saw)) .+|there(?:'s| is| are) .+|"
     r"(?:the |my |our |an? )?(?:\w+ ){1,5}wants? to know"
     r"|i (?:just )?want(?:ed)? to (?:see|check|make sure) (?:if|whether|that|how|what) .+"
@@ -82,6 +84,7 @@ _HARMLESS = re.compile(
     r"|\b(?:i|we) (?:can['’]?t|cannot|could not|couldn['’]?t) (?:tell|make out|see|work out|read)"
     r"(?: from here)? (?:if|whether|what|which|who)\b"
     r"|\b(?:got|have|had) (?:\w+ ){1,4}asking (?:me |us )?about\b"
+    r"|\b(?:wr[io]te|writing|written|not(?:e|ed|ing)|jott?(?:ed|ing)?) (?:it|them|that|this|those|any|all of (?:it|them)) down\b"
     r"|\b(?:pan|tilt|zoom) (?:smoothness|speed|accuracy|performance|response|motors?|gears?|mechanism|backlash)\b"
     r"|\b(?:its|his|her|their) (?:left|right)[- ](?:turn|arm|leg|foot|wheel|wing|side|flank|indicator|headlight)s?\b"
     r"|\bi (?:just )?want(?:ed)? the (?:whole )?(?:lot|thing|works)\b|\bunder the camera\b"
@@ -109,7 +112,7 @@ AMOUNT = re.compile(
 _BOUNDARY = re.compile(r"(?:[,;.!?]|(?<=\w) -+| –| —)\s+(?=[\w'’]+[^.;!?]*[.!]*$)")
 _REASON = re.compile(
     r",? (?:as|because|'?cause|cos|coz|since|given that|seeing as|now that|and i (?:only )?ask (?:only )?because) "
-    r"|[,?] (?:for|only) (?=i |we |he |she |they |the |my )|, (?=which (?:is|was|will|would|i|we|makes)\b)",
+    r"|[,?] (?:for|only) (?=i |we |he |she |they |the |my |someone |somebody )|, (?=which (?:is|was|will|would|i|we|makes)\b)",
     re.IGNORECASE,
 )
 _PURPOSE = re.compile(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from scope_ptz.english import is_plural
+
 _IFS = "if|when|once|as soon as|in case|provided|unless|until|till|while"
 _UNSEEN = (
     r"(?:you|we|i) (?:can['’]?t|cannot|can not|don['’]?t|do not|aren['’]?t|are not) "
@@ -17,6 +19,13 @@ _NOUN_END = (
 _STATE = r"(wide open|open|shut|closed|ajar|empty|idle|unattended|still|unused|vacant|unlocked|unmanned|dark)"
 
 CONDITIONS = (
+    (
+        r"^(if) (?:the )?((?!the |there|it|you|we|i |any|no |some|that|this|he |she |they )"
+        r"(?:(?!\b(?:is|are|was|were|has|have|can|(?:look|seem|stay|stand|sit|lie|remain|hang)s?)\b)[\w ])+?) "
+        r"(open|shut|closed|locked|unlocked|empty|full|blocked|clear|lit|occupied|flooded),? "
+        r"(?=(?:then )?(?:take|pic|photo|snap|count|zoom|go|tell|report|pan|tilt)\b)",
+        lambda match: f"{match[1]} the {match[2]} {'are' if is_plural(match[2].split()[-1]) else 'is'} {match[3]}, ",
+    ),
     (rf"\b({_IFS}) {_UNSEEN} (?:anyone|anybody|any people){_NOUN_END}", r"\1 there is nobody"),
     (rf"\b({_IFS}) {_UNSEEN} (?:any|an?) ([\w -]+?){_NOUN_END}", r"\1 there is no \2"),
     (rf"\b({_IFS}) {_UNSEEN} (the [\w -]+?){_NOUN_END}", r"\1 \2 is not in view"),

@@ -93,8 +93,31 @@ COUNTS = (
     (r",? (?:and )?not (?:just|only) (?:here|there)(?=\W*$)", ""),
     (
         r",? (?:and )?not (?:just|only) (?:what(?:['’]s| is| (?:you|we|i) (?:can )?see| the camera (?:shows|sees)) )?"
-        r"(?:(?:on|in) (?:the |this )?(?:screen|view|picture|frame|shot)|visible(?: now)?)(?=\W*$)",
+        r"(?:(?:on |in )?(?:the |this )?(?:present |current )?(?:screen|view|picture|frame|shot)|visible(?: now)?)(?=\W*$)",
         "",
+    ),
+    (
+        r"^((?:please )?(?:how many|count|(?:the )?number of|(?:give|get) (?:me|us) (?:a|the) (?:count|number|total) of)\b"
+        r"[^?.!,;:]*?)[,;] (?:the )?(?:whole|entire|full|complete) "
+        r"(?:yard|site|area|lot|place|field|grounds?|park|premises|plot|property|pitch"
+        r"|compound|campus|estate|farm|harbou?r|port|depot|works)\W*$",
+        r"\1 in the whole scene",
+    ),
+    (
+        r"^((?!.*\b(?:which|more|fewer)\b)[\w' ]*?)\b(\w+s),? (?:vs\.?|versus|against) ([\w' ]*?\b\2)"
+        r"((?: (?:in|at|on) (?:the|this) [\w ]+?)?)[,;:] "
+        r"(?:numbers|counts|totals|figures|count both|how many of each|both numbers)(?: please| pls)?\W*$",
+        r"count the \1\2 and the \3\4",
+    ),
+    (
+        r"^([\w' ]+?) (?:plus|and) ([\w' ]+?)((?: (?:in|at|on) (?:the|this) [\w ]+?)?)[,;:] "
+        r"what(?:['’]s| is) the (?:sum|total|combined (?:number|total))\W*$",
+        lambda match: f"what is the total of {match[1][:1].lower()}{match[1][1:]} and {match[2]}{match[3]}?",
+    ),
+    (
+        r"\b(rank|order|sort) ((?:all )?(?:the )?(?:\w+ )?(?:presets|positions|views) by (?:the )?(?:number|count) of [\w ]+?), "
+        r"(?:highest|most|largest|biggest|busiest|fullest|lowest|fewest|smallest|quietest|best) first\b",
+        r"\1 \2",
     ),
     (r"\bin each case\b", "at each one"),
     (r"\bin (?:the )?(?:list(?:ed)?|preset) order\b|\bin the order (?:(?:they(?:['’]re| are) )?listed|of the list)\b", "in order"),

@@ -19,6 +19,7 @@ _BEFORE_ADDRESS = (
 _TIME = r"(?:\d+(?:\.\d+)?|an?|half an?|[a-z]+(?:-[a-z]+)?) ?(?:s|secs?|seconds?|mins?|minutes?)(?: and a half)?"
 
 COURTESIES = (
+    (r"(?<!wait)(?<!waiting)(?<!left)(?<!ready) for (?:me|us) (?=(?:at|on|in|by|outside) (?:the|each|every|both)\b)", " "),
     (rf"^(?:auto[- ]?)?tracking(?: test| check)?[,:] ({_TIME})[,:] (?=the |an? |that |this )([^.;]+?)\W*$", r"track \2 for \1"),
     (
         rf"^(?:the )?duration(?: is|:)? ({_TIME})[.,;:] (?:please )?((?:follow|track|trail|tail|shadow|keep|stay)\b[^.;]*?)\W*$",
@@ -117,9 +118,26 @@ COURTESIES = (
     (r"^any idea (?=how many|what|where|who)", ""),
     (r"\b(?:could|can|shall) we (?=zoom|pan|tilt|turn|count)", "please "),
     (
-        r"^(?:commissioning|counting|tracking|following|panning|tilting|zooming|pan|tilt|zoom|focus"
+        r"^(?:(?:object|person|people|vehicle|target) )?(?:commissioning|counting|tracking|following|panning|tilting|zooming|pan"
+        r"|tilt|zoom|focus|count|counter|detector|detection|tracker|recognition"
         r"|absolute positioning|positioning|acceptance|range|function|regression|routine|optical) "
         r"(?:step|test|check|case)(?: [\d.]+)? ?[:.,] ",
+        "",
+    ),
+    (
+        r"^(?:(?:ok|okay|right|now|so|and),? )*(?:the )?(?:object |person |people |vehicle )?(?:detector|detection|counting|counter"
+        r"|tracking|tracker|recognition|motors?|optics|zoom|pan|tilt)(?: test| check)? (?:next|now)[,.:;] (?=\w+ \w)",
+        "",
+    ),
+    (r"(?<=\?) (?:please )?report(?: back)?(?: to me| please)?\W*$", ""),
+    (
+        r"^((?:is|are|was|were|has|have|do|does|did|how|what|who|where|which|any)\b[^,.;?]*?),? "
+        r"(?:(?:do|would) you (?:happen to )?know|by any chance)(?=\W*$|[,.;?])",
+        r"\1",
+    ),
+    (
+        r"(?<=\w),? if (?:that(?:['’]s| is) (?:fine|cool)|(?:that|it)(?:['’]s| is) (?:ok|okay|all right|alright|possible))"
+        r"(?: (?:with|by) you)?(?=\W*$)",
         "",
     ),
     (r"^(?:it|the camera|the picture|the view) needs to (?=go|come|move|point|look)", ""),

@@ -32,6 +32,22 @@ MOVES = (
         r"(?:,| and) (?=\w)",
         "go home, then ",
     ),
+    (r"^(?:relative|incremental)(?: (?:move|movement|adjustment|step|command))?[:,.] (?=(?:pan|tilt|zoom)\b)", ""),
+    (
+        r"\b((?:a )?(?:half|third|quarter) of what) (?:(?:we|you|i)(?:['’]ve| have) got|(?:we|you|i) have|it(?:['’]s| is) at)"
+        r"(?: right| at)?(?: now| present| the moment)?",
+        r"\1 it is now",
+    ),
+    (r"\b(then|and|then,) (?:come|go|move) back (?=(?:by )?(?:\d|[a-z]+ degrees?\b))", r"\1 back "),
+    (
+        r"\b(?:i|we)(?:['’]d| would)? (?:need|want|like|have) to be "
+        r"(?=(?:\d+(?:\.\d+)?|two|three|four|five|six) ?(?:x|times) (?:closer|nearer)\b)",
+        "zoom in ",
+    ),
+    (
+        r"\b(?:i|we)(?:['’]d| would)? (?:need|want|like|have) to be (?=(?:twice|three times|four times) as close\b)",
+        "zoom in ",
+    ),
     (r"\btighten (?:it |her )?up\b", "zoom in"),
     (r"\bgo to (?:whichever|whatever)(?: one)? (?:it|that) is\b", "go there"),
     (r"\b(left|right|up|down)\. \1(?= (?:by )?\d)", r"\1"),
@@ -160,7 +176,7 @@ MOVES = (
     (r"\bgo to whichever(?: one)?(?: it is| that is| has (?:it|more|the most)| wins?)?(?=\W*$|,)", "go there"),
     (
         r"(?<!left)(?<!right)(?<!up)(?<!down)(?<!in)(?<!out)(?<!wide)(?<!far)(?<!close)(?<!soon),? as (?:he|she|it|they) (?:goes?"
-        r"|moves?|walks?|drives?|comes?)(?: along| past| by| around| through)?(?=[,.]|$)",
+        r"|moves?|walks?|drives?|comes?)(?: along| past| by| around| through)?(?=[,.]|$| for )",
         "",
     ),
     (r"\bi (want|need) (?=see\b)", r"i \1 to "),

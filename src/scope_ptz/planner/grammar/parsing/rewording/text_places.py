@@ -9,13 +9,13 @@ from scope_ptz.english import is_plural, plural
 from scope_ptz.planner.grammar.lexing.preset_names import short_names
 from scope_ptz.planner.grammar.parsing.remark_detection.surrounding_remarks import asks_for_something
 from scope_ptz.planner.grammar.parsing.rewording.preset_comparisons import with_presets_compared
+from scope_ptz.planner.grammar.parsing.rewording.preset_groups import with_groups_named
 from scope_ptz.planner.grammar.parsing.rewording.text_counts import NO_TOPIC
 
 _STATES = (
     "open|shut|closed|locked|unlocked|clear|empty|full|free|busy|quiet|blocked|wet|dry|lit|occupied|flooded|icy|manned|staffed|"
     "on|off|up|down|raised|lowered"
 )
-_TOUR = re.compile(r"\b(?:each|every|all)\b", re.IGNORECASE)
 _TOUR = re.compile(r"\b(?:each|every|all)\b", re.IGNORECASE)
 _PICTURES = r"(?:photo|photograph|picture|pic|snap|shot|still|image)"
 _COUNTS = r"(?:how many|number of|count(?: the)?|total(?: of)?)"
@@ -31,6 +31,7 @@ def _names(presets: tuple[str, ...]) -> str:
 
 def with_places_named(text: str, presets: tuple[str, ...]) -> str:
     """Return "count the vans at the yard" for "vans count, yard", "is the yard clear?" for "yard clear?", and so on."""
+    text = with_groups_named(text, presets)
     words = set(re.findall(r"[^\W_]+", text.lower()))
     if not any(words & set(re.findall(r"[^\W_]+", preset.lower())) for preset in presets):
         return text
@@ -206,6 +207,10 @@ def with_places_named(text: str, presets: tuple[str, ...]) -> str:
             rf"|across|out)? ?there"
             rf"|(?:show (?:me|us)|go to|bring up|take (?:me|us) to) (?:that one|it|there))\b",
             lambda match: match[0] if asks_for_something(match["news"], ()) else f"go to the {match['place']}",
+        ),
+        (
+            rf"^(?:the )?({names}) ([a-z]+)(?:,|\.|:| -) ((?:{_STATES}) or (?:{_STATES}))\W*$",
+            lambda match: f"{'are' if is_plural(match[2]) else 'is'} the {match[2]} at the {match[1]} {match[3]}?",
         ),
         (rf"\b(?:snap|take|grab|get) (?:me )?one of (?:the )?({names})\b", r"take a picture of the \1"),
         (rf"\bsee (?:the )?({names}) (?:car ?park|parking|area|place|side|bit)\b", r"see the \1"),

@@ -24,6 +24,19 @@ _QUESTION = r"(?:is|are|do|does|has|have|can|how|who|what|which|where|any)\b"
 _ARTICLE = r"(?:the|that|this|these|those|my|our|his|her|their)"
 QUESTIONS = (
     (
+        rf"^(?:at |in |for )?((?:each|every) (?:preset|position|view|stop|place|one)|all (?:the )?(?:presets|positions|views))"
+        rf"\s?[:–-] (?:the )?(?!{_QUESTION})([\w' ]+?) (?:is |are )?((?:{_STATES}) or (?:{_STATES}))\W*$",
+        lambda match: (
+            match[0] if NO_TOPIC.search(match[2]) else f"at {match[1]}, tell me whether the {match[2]} {_are(match[2])} {match[3]}"
+        ),
+    ),
+    (
+        rf"^(?:at |in |for )?((?:each|every) (?:preset|position|view|stop|place|one)|all (?:the )?(?:presets|positions|views))"
+        rf"\s?[:–-] (is|are) (the [\w' ]+?) ((?:{_STATES})(?: or (?:{_STATES}))?)\W*$",
+        r"at \1, tell me whether \3 \2 \4",
+    ),
+    (rf"^((?!{_QUESTION})[^,.;:?!]+)\. ((?:{_STATES}) or (?:{_STATES}))\W*$", r"\1, \2?"),
+    (
         rf"^(?:(?:do|make|run) )?(?:a )?{_WHOLE} (?:check|scan|sweep|survey|search|look|inspection)\s?[:,.–-]+ "
         rf"({_QUESTION}[^?.;]*)\?*$",
         r"\1 in the whole scene?",
@@ -157,6 +170,11 @@ QUESTIONS = (
     (r"\b(?:run|go) through (?:all )?the presets and check at each one (?=whether|if)", "at each preset, check "),
 )
 """Patterns with the words that replace them."""
+
+
+def _are(things: str) -> str:
+    """Return the verb for a noun phrase."""
+    return "are" if is_plural(things.split(" ")[-1]) else "is"
 
 
 def _asks(text: str) -> bool:

@@ -35,7 +35,7 @@ REMARKS = (
     (r"\bth['’](?=[a-z])", "the "),
     (r"\bur (?=look|point|aim)", "you're "),
     (
-        r"(\ball the way(?: to the)? (?:left|right|up|down|in|out)),? (?:till|until) it (?:stops|hits the stop|will "
+        r"(\ball the way(?: a?round)?(?: to the)? (?:left|right|up|down|in|out)),? (?:till|until) it (?:stops|hits the stop|will "
         r"not go any further)(?: like)?",
         r"\1",
     ),
@@ -121,6 +121,12 @@ REMARKS = (
     ),
     (r",? should be (?:about |around )?(?:\d+|two|three|four|five|six|seven|eight|nine|ten|a dozen)\W*$", ""),
     (r"[.?!] that (?:should|ought to|will) (?:put|bring|get|give|show|do)\b[^?!]*$", ""),
+    (r", that (?:should|ought to|will) (?:put|bring|get) (?:the|my|our|his|her|their) [a-z ]+\W*$", ""),
+    (
+        r"\bfor, (?:i dunno|i don['’]?t know|i do not know|oh|say|let['’]?s say|shall we say|what|maybe|like|um|er),? "
+        rf"(?=(?:\d+|an?|{_NUMBER[3:-1]}|\w+ty(?:-\w+)?) )",
+        "for ",
+    ),
     (r"[;,.] (?:both|they|these|all) (?:are|is) for (?:the|my|our)\b[^;.]*\W*$", ""),
     (
         r",? before (?:the |my |our )?(?:next |morning |evening |night |day )?(?:hand ?over|shift change|lunch(?:time)?|breakfast"

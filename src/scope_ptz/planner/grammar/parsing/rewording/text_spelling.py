@@ -24,6 +24,8 @@ WORDS = {
     "gie": "give",
     "gies": "give me",
     "hv": "have",
+    "img": "image",
+    "imgs": "images",
     "mair": "more",
     "mek": "make",
     "mnay": "many",
