@@ -173,7 +173,6 @@ def test_the_second_half_of_a_message_replaces_the_first(instruction: str, expec
     [
         "pan right 30, less, say 45",
         "pan right 30. Too much, 10",
-        "zoom in on the boat shed, no, the black one",
         "pan left 20 and tilt up 10, no, right 5",
     ],
 )

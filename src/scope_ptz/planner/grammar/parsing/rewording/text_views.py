@@ -22,6 +22,7 @@ def _wanted_in_frame(match: re.Match[str]) -> str:
 
 
 VIEWS = (
+    (r"\b(in) (?=(?:picture|image)(?:[,.;?!]|$| (?:please|now|right now|so|and|then)\b))", r"\1 the "),
     (r"^preset (?:recall|call[- ]?up|call|selection|select)(?: test)?[:,]? (?=\w)", "go to "),
     (r"^(?:the )?presets? list(?: first)?(?=\W*$|[,.;]| then\b| and\b)", "list the presets"),
     (r"([,.;] (?:and )?(?:then )?)image(?=\W*$)", r"\1take an image"),
