@@ -54,7 +54,8 @@ QUESTIONS = (
         rf"^(?:the )?(([a-z]+) \d+) ({_STATES})(?: (?:or not|yet|now|still))?\?$",
         lambda match: match[0] if match[2].lower() != "track" and NO_TOPIC.search(match[2]) else f"is {match[1]} {match[3]}?",
     ),
-    (r"\b(looks?|looked|seems?|appears?|sounds?) as (?:if|though) (?!they were)", r"\1 like "),  # not "as if they were", which is contrary to fact
+    # "as if they were" is contrary to fact, so it is no likeness.
+    (r"\b(looks?|looked|seems?|appears?|sounds?) as (?:if|though) (?!they were)", r"\1 like "),
     (
         r"\b(tell me (?:how many|what|which|where|who|whether)\b[^.;?]*?) and if "
         r"(?=(?:the|there|any|it|they|he|she|my|our)\b[^,.;]*\W*$)",
