@@ -8,15 +8,15 @@ import pytest
 
 from scope_ptz.planner.grammar.execution.outline import OutlineBlock
 from scope_ptz.planner.grammar.parsing.rewording.rewordings import rewordings
-from scope_ptz.planner.grammar.parsing.rewording.text_conditions import CONDITIONS
-from scope_ptz.planner.grammar.parsing.rewording.text_counts import COUNTS
-from scope_ptz.planner.grammar.parsing.rewording.text_courtesy import COURTESIES
-from scope_ptz.planner.grammar.parsing.rewording.text_moves import MOVES
-from scope_ptz.planner.grammar.parsing.rewording.text_questions import QUESTIONS
-from scope_ptz.planner.grammar.parsing.rewording.text_remarks import REMARKS
-from scope_ptz.planner.grammar.parsing.rewording.text_spelling import SPELLING
-from scope_ptz.planner.grammar.parsing.rewording.text_views import VIEWS
-from scope_ptz.planner.grammar.parsing.rewording.text_withdrawals import WITHDRAWALS
+from scope_ptz.planner.grammar.parsing.rewording.tables.conditions import CONDITIONS
+from scope_ptz.planner.grammar.parsing.rewording.tables.counts import COUNTS
+from scope_ptz.planner.grammar.parsing.rewording.tables.courtesy import COURTESIES
+from scope_ptz.planner.grammar.parsing.rewording.tables.moves import MOVES
+from scope_ptz.planner.grammar.parsing.rewording.tables.questions import QUESTIONS
+from scope_ptz.planner.grammar.parsing.rewording.tables.remarks import REMARKS
+from scope_ptz.planner.grammar.parsing.rewording.tables.spelling import SPELLING
+from scope_ptz.planner.grammar.parsing.rewording.tables.views import VIEWS
+from scope_ptz.planner.grammar.parsing.rewording.tables.withdrawals import WITHDRAWALS
 from scope_ptz.planner.plan import plan
 
 PRESETS = ("main-gate", "yard", "loading-dock", "roof")

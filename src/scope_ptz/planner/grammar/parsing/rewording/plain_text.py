@@ -7,17 +7,17 @@ import re
 from scope_ptz.planner.grammar.lexing.spelling import corrected_noun, with_whole_ending, without_stretched_letters
 from scope_ptz.planner.grammar.parsing.remark_detection.surrounding_remarks import without_remarks
 from scope_ptz.planner.grammar.parsing.rewording.rewordings import reworded_text, rewordings
-from scope_ptz.planner.grammar.parsing.rewording.text_conditions import CONDITIONS
-from scope_ptz.planner.grammar.parsing.rewording.text_counts import COUNTS
-from scope_ptz.planner.grammar.parsing.rewording.text_courtesy import COURTESIES
-from scope_ptz.planner.grammar.parsing.rewording.text_moves import MOVES
-from scope_ptz.planner.grammar.parsing.rewording.text_places import with_places_named
-from scope_ptz.planner.grammar.parsing.rewording.text_questions import QUESTIONS, with_question_apart, with_separate_questions
-from scope_ptz.planner.grammar.parsing.rewording.text_remarks import REMARKS
-from scope_ptz.planner.grammar.parsing.rewording.text_repairs import REPAIRS
-from scope_ptz.planner.grammar.parsing.rewording.text_spelling import SPELLING, WORDS
-from scope_ptz.planner.grammar.parsing.rewording.text_views import VIEWS
-from scope_ptz.planner.grammar.parsing.rewording.text_withdrawals import WITHDRAWALS, without_part_left_out
+from scope_ptz.planner.grammar.parsing.rewording.tables.conditions import CONDITIONS
+from scope_ptz.planner.grammar.parsing.rewording.tables.counts import COUNTS
+from scope_ptz.planner.grammar.parsing.rewording.tables.courtesy import COURTESIES
+from scope_ptz.planner.grammar.parsing.rewording.tables.moves import MOVES
+from scope_ptz.planner.grammar.parsing.rewording.tables.places import with_places_named
+from scope_ptz.planner.grammar.parsing.rewording.tables.questions import QUESTIONS, with_question_apart, with_separate_questions
+from scope_ptz.planner.grammar.parsing.rewording.tables.remarks import REMARKS
+from scope_ptz.planner.grammar.parsing.rewording.tables.second_halves import REPAIRS
+from scope_ptz.planner.grammar.parsing.rewording.tables.spelling import SPELLING, WORDS
+from scope_ptz.planner.grammar.parsing.rewording.tables.views import VIEWS
+from scope_ptz.planner.grammar.parsing.rewording.tables.withdrawals import WITHDRAWALS, without_part_left_out
 
 _STANDARD = rewordings((*SPELLING, *CONDITIONS, *COURTESIES))
 _ASIDES = rewordings((*REPAIRS, *WITHDRAWALS, *REMARKS))

@@ -10,7 +10,7 @@ from scope_ptz.planner.grammar.lexing.preset_names import short_names
 from scope_ptz.planner.grammar.parsing.remark_detection.surrounding_remarks import asks_for_something
 from scope_ptz.planner.grammar.parsing.rewording.preset_comparisons import with_presets_compared
 from scope_ptz.planner.grammar.parsing.rewording.preset_groups import with_groups_named
-from scope_ptz.planner.grammar.parsing.rewording.text_counts import NO_TOPIC
+from scope_ptz.planner.grammar.parsing.rewording.tables.counts import NO_TOPIC
 
 _STATES = (
     "open|shut|closed|locked|unlocked|clear|empty|full|free|busy|quiet|blocked|wet|dry|lit|occupied|flooded|icy|manned|staffed|"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from scope_ptz.english import is_plural
-from scope_ptz.planner.grammar.parsing.rewording.text_counts import NO_TOPIC
+from scope_ptz.planner.grammar.parsing.rewording.tables.counts import NO_TOPIC
 
 _STATES = "open|shut|closed|locked|clear|empty|full|free|busy|quiet|blocked|occupied|taken|lit|on|off|up|down|ready|clean|dirty"
 _TAGS = "right|correct|yeah|is there|are they|is that right"

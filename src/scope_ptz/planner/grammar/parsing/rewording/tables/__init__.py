@@ -1,0 +1,1 @@
+"""Tables of wordings and what replaces them, by what they are about."""
