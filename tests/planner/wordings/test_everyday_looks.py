@@ -4,30 +4,14 @@ from __future__ import annotations
 
 import pytest
 
-from scope_ptz.planner.plan import PlannedCall, plan
+from scope_ptz.planner.plan import plan
+from tests.planner.wordings.planned_calls import ask, count, planned_calls, zoom
 
 PRESETS = ("boat-yard", "north-pontoon", "slip-rank")
 
 
-def described(call: PlannedCall) -> str:
-    return f"{call.name}({', '.join(map(str, call.arguments.values()))})"
-
-
 def calls(instruction: str) -> str:
-    planned = plan(instruction, PRESETS)
-    return planned.clarification or "; ".join(map(described, planned.calls))
-
-
-def count(things: str, view: str = "current") -> str:
-    return f"count_objects({things}, {view})"
-
-
-def ask(question: str, view: str = "current") -> str:
-    return f"query_answer({question}, {view})"
-
-
-def zoom(thing: str) -> str:
-    return f"zoom_to_object({thing})"
+    return planned_calls(instruction, PRESETS)
 
 
 @pytest.mark.parametrize(

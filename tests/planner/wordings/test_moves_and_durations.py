@@ -5,18 +5,15 @@ from __future__ import annotations
 import pytest
 
 from scope_ptz.geometry import Pose
-from scope_ptz.planner.plan import PlannedCall, plan
+from scope_ptz.planner.plan import plan
 from tests.planner.stage import Stage
+from tests.planner.wordings.planned_calls import planned_calls
 
 PRESETS = ("gate", "dock")
 
 
-def described(call: PlannedCall) -> str:
-    return f"{call.name}({', '.join(f'{name}={value}' for name, value in call.arguments.items())})"
-
-
 def calls(instruction: str) -> str:
-    return "; ".join(described(call) for call in plan(instruction, PRESETS).calls)
+    return planned_calls(instruction, PRESETS, with_names=True)
 
 
 @pytest.mark.parametrize(

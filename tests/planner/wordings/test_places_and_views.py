@@ -4,22 +4,13 @@ from __future__ import annotations
 
 import pytest
 
-from scope_ptz.planner.plan import PlannedCall, plan
+from tests.planner.wordings.planned_calls import count, planned_calls
 
 PRESETS = ("berth-one", "berth-two", "north-slip", "south-slip", "ice-house")
 
 
-def described(call: PlannedCall) -> str:
-    return f"{call.name}({', '.join(map(str, call.arguments.values()))})"
-
-
 def calls(instruction: str) -> str:
-    planned = plan(instruction, PRESETS)
-    return planned.clarification or "; ".join(map(described, planned.calls))
-
-
-def count(things: str, view: str = "current") -> str:
-    return f"count_objects({things}, {view})"
+    return planned_calls(instruction, PRESETS)
 
 
 def at(preset: str, *looks: str) -> str:

@@ -4,17 +4,14 @@ from __future__ import annotations
 
 import pytest
 
-from scope_ptz.planner.plan import PlannedCall, plan
+from scope_ptz.planner.plan import plan
+from tests.planner.wordings.planned_calls import planned_calls
 
 PRESETS = ("gate", "dock", "crest-road", "main-entrance", "spillway", "hall-a")
 
 
-def described(call: PlannedCall) -> str:
-    return f"{call.name}({', '.join(f'{name}={value}' for name, value in call.arguments.items())})"
-
-
 def calls(instruction: str) -> str:
-    return "; ".join(described(call) for call in plan(instruction, PRESETS).calls)
+    return planned_calls(instruction, PRESETS, with_names=True)
 
 
 @pytest.mark.parametrize(
