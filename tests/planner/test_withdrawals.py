@@ -12,12 +12,15 @@ MIN_CARRIED_OUT = 0.65
 MAX_MOVED_IN_SPITE = 0.33
 
 
-def test_statements_that_nobody_has_seen_are_told_apart() -> None:
+@pytest.mark.parametrize("step", [4, pytest.param(1, marks=pytest.mark.full)])
+def test_statements_that_nobody_has_seen_are_told_apart(step: int) -> None:
     moved = {
-        carried_out: [row.moves_the_camera() for row in rows("held-out") if row.carried_out == carried_out]
+        carried_out: [
+            row.moves_the_camera() for row in [each for each in rows("held-out") if each.carried_out == carried_out][::step]
+        ]
         for carried_out in (True, False)
     }
-    assert len(moved[True]) == len(moved[False]) == 370
+    assert len(moved[True]) == len(moved[False]) == -(-370 // step)
     assert sum(moved[True]) / len(moved[True]) > MIN_CARRIED_OUT
     assert sum(moved[False]) / len(moved[False]) < MAX_MOVED_IN_SPITE
 
@@ -25,8 +28,9 @@ def test_statements_that_nobody_has_seen_are_told_apart() -> None:
 @pytest.mark.parametrize(
     ("harmless", "binding"),
     [
-        ("I am sure about the swan", "I was only joking"),
-        ("I asked my wife about it", "I must ask my wife about it first"),
+        ("the rain has stopped at last", "this was meant for the drone"),
+        ("my sister lives there", "I was talking to my sister"),
+        ("she sings on the radio", "I was quoting the radio"),
         ("we paint the lines tomorrow", "we will do that tomorrow"),
     ],
 )

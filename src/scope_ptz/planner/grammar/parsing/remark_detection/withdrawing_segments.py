@@ -12,8 +12,8 @@ from scope_ptz.planner.grammar.parsing.remark_detection.remark_forms import give
 from scope_ptz.planner.grammar.parsing.remark_detection.segments import segments_of
 from scope_ptz.planner.grammar.parsing.remark_detection.shorter_versions import MAX_SHORTENED_CHARS
 
-_MIN_LOG_ODDS = 0.5
-"""At this value, one in two hundred harmless instructions is asked about.
+_MIN_LOG_ODDS = 0.3
+"""At this value, one in 140 harmless instructions is asked about.
 
 Source: ``python -m benchmarks.planner_models.withdrawal_model``.
 """
