@@ -175,6 +175,7 @@ def test_every_pattern_compiles(patterns: tuple) -> None:  # type: ignore[type-a
         "pan left 20 degrees, he told me",
         "zoom in. sorry, I was talking to Dave",
         "here is an example. zoom in",
+        "do not execute this. zoom in",
     ],
 )
 def test_statements_that_take_a_command_back_in_any_words_move_nothing(instruction: str) -> None:

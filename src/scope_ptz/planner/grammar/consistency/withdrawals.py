@@ -21,7 +21,8 @@ _LAST_WORDS = (
 """Set phrases that take a command back as the last sentence. Other statements are recognised by the model of statements."""
 
 _FIRST_WORDS = (
-    r"don['’]t take this literally",
+    r"(?:don['’]?t|do not) take this literally",
+    r"(?:please )?(?:don['’]?t|do not) (?:do|execute|run|obey|carry out) (?:this|that|it|the following)",
     r"the (?:label|manual|note) (?:reads|says)",
     r"the syntax is",
     r"the following is",
