@@ -24,6 +24,9 @@ _COMMANDS = (
 )  # fmt: skip
 """Verbs that never begin a statement about a command, unlike "hold it", "leave it" and "check with me first"."""
 
+_FRAGMENTS = frozenset({"what", "where", "which", "when", "if", "and", "as", "because", "but", "since", "so", "then", "while"})
+"""Words that say nothing without the clause after them."""
+
 _MAX_SEGMENTS = 3  # segments of one instruction that are yielded: for each of them the caller plans once more
 
 
@@ -43,12 +46,14 @@ class WithdrawingSegment:
 
 
 def is_command(text: str, presets: tuple[str, ...]) -> bool:
-    """Return whether a segment begins with the verb of a command ("then count the cars"), so that it is no statement.
+    """Return whether a segment is no statement: it begins with the verb of a command ("then count the cars"), or is one short word.
 
     Args:
         text: The words of the segment.
         presets: The camera's presets.
     """
+    if text.lower() in _FRAGMENTS:
+        return True
     first = next((lexeme for lexeme in lexemes_of(text, presets) if not lexeme.has("FILLER", "AND", "THEN", "COMMA")), None)
     return first is not None and first.has(*_COMMANDS) and not first.has("TELL")
 
