@@ -46,7 +46,7 @@ class WithdrawingSegment:
 
 
 def is_command(text: str, presets: tuple[str, ...]) -> bool:
-    """Return whether a segment is no statement: it begins with the verb of a command ("then count the cars"), or is one short word.
+    """Return whether a segment is no statement: it begins with the verb of a command ("then count the cars"), or is a mere "if".
 
     Args:
         text: The words of the segment.
