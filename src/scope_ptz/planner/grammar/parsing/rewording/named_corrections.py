@@ -102,10 +102,11 @@ def _correction(lexemes: Sequence[Lexeme]) -> _Correction | None:
     last = len(lexemes)
     while last and lexemes[last - 1].has("STOP"):
         last -= 1
-    for i in range(1, last - 1):
-        before = lexemes[:i]
-        if not lexemes[i].has(*_PAUSES) or not any(x.has(*_COMMANDS, *_ASKING) for x in before):
+    command = next((i for i, x in enumerate(lexemes[:last]) if x.has(*_COMMANDS, *_ASKING)), last)
+    for i in range(command + 1, last - 1):
+        if not lexemes[i].has(*_PAUSES):
             continue
+        before = lexemes[:i]
         for form in _FORMS:
             match = full_match(f"{_OPENERS} ({form}) FILLER*", lexemes[i + 1 : last])
             if match is not None and _fits(match, before):
