@@ -1,4 +1,4 @@
-"""Recognise wishes to see a thing that only say what the move beside them is for: "I want the ride in view, pull back a lot"."""
+"""Recognise requests to see a thing that only say what the move beside them is for: "I want the ride in view, pull back a lot"."""
 
 from __future__ import annotations
 

@@ -13,7 +13,7 @@ from scope_ptz.planner.grammar.parsing.remark_detection.segments import segments
 from scope_ptz.planner.grammar.parsing.remark_detection.shorter_versions import MAX_SHORTENED_CHARS
 
 _MIN_LOG_ODDS = 0.3
-"""At this value, one in 140 harmless instructions is asked about.
+"""At this value, fewer than one in a hundred harmless instructions are asked about.
 
 Source: ``python -m benchmarks.planner_models.withdrawal_model``.
 """
