@@ -46,6 +46,12 @@ _TAKING_BACK = re.compile(
 )
 """Words with which a statement may take something back, or ask for something else: "it should be lower", "belay that"."""
 
+_EMBEDDED_QUESTION = re.compile(
+    r"^(?:(?:i|we)(?:['’]d)?|would) (?:\w+ ){0,3}(?:know|learn|find out|see|hear|be told) (?:how|what|which|who|whose|where|if|whether)\b",
+    re.IGNORECASE,
+)
+"""The beginning of a question in the form of a statement: "I need to know which words are on the board"."""
+
 _BINDING = re.compile(
     r"\b(?:don['’]?t|do not|not|no|never|nor|without|instead|unless|if|when(?! you (?:get|have|can))|until|till|otherwise|else"
     r"|whichever|either|only|except|rather|wait|actually|cancel|forget|ignore|scratch|stop|mind|mean|first|then|next|before|after"
@@ -78,11 +84,11 @@ def versions_without_remarks(text: str, presets: tuple[str, ...]) -> Iterator[st
 
 
 def _is_binding(text: str, presets: tuple[str, ...]) -> bool:
-    """Return whether a segment begins with a command, or may restrict, forbid, repeat or take back something."""
+    """Return whether a segment begins with a command or asks, or may restrict, forbid, repeat or take back something."""
     first = next((lexeme for lexeme in lexemes_of(text, presets) if not lexeme.has("FILLER", "AND", "BUT")), None)
     if first is not None and (first.has(*VERBS, "TELL", "HOWMANY") or first.word == "of"):
         return True  # "one picture, only one, of the van"
-    if _TAKING_BACK.search(text) is not None:
+    if _TAKING_BACK.search(text) is not None or _EMBEDDED_QUESTION.match(text) is not None:
         return True
     if (negated := _NEGATED_STATEMENT.match(text)) is not None:
         text = text[negated.end() :]
