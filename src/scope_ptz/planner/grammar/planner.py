@@ -18,7 +18,7 @@ from scope_ptz.planner.grammar.execution.closer_look import offer_in, offer_text
 from scope_ptz.planner.grammar.execution.program import Program
 from scope_ptz.planner.grammar.instruction_tree import Forbid, LookCloser, Thing
 
-GRAMMAR_VERSION = "6"
+GRAMMAR_VERSION = "7"
 """Version of the grammar in traces and run cards. It is raised when any instruction gets a different plan."""
 
 

@@ -50,6 +50,7 @@ _WITHDRAWAL = re.compile(
     r"|\b(?:not|nobody|no one) (?:wants?|needs?|asked for) (?:it|that|this|you|them|any)\b"
     r"|\bdo(?:es)? not want (?:to|it|that|this)\b|\b(?:which|that|this) (?:is|was) (?:wrong|an? (?:error|mistake))\b"
     r"|\bcancell?ed$|\bcall(?:ed|ing|s)? (?:it|that|this) off\b|\bsecond thoughts\b|\bagainst (?:it|that|this)\b|\ban error\b"
+    r"|\b(?:unnecessary|pointless|unwise|illegal|too (?:risky|dangerous))\b|\b(?:they|he|she|i|we) object(?:s|ed)?\b"
     r"|\bnever to\b|\b(?:say|says|said|told \w+ to) (?:hold on|hang on|wait|stop)\b|\b(?:have|has|had) to wait\b"
     r"|\b(?:has|have) already been done\b|\balready did (?:it|that)\b"
 )

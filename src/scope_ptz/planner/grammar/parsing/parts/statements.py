@@ -28,6 +28,11 @@ _INTRANSITIVE_PAST = frozenset({
     "appeared", "happened", "whispered", "apologised", "apologized", "replied", "swore", "radioed", "emailed", "texted", "panicked",
 })  # fmt: skip
 """Past forms of verbs without an object, and of verbs of speaking, which are no participles after a noun: "my boss asked"."""
+_REPORTING = frozenset({
+    "say", "says", "said", "think", "thinks", "thought", "reckon", "reckons", "reckoned", "swear", "swears", "swore", "insist",
+    "insists", "suspect", "suspects", "believe", "believes",
+})  # fmt: skip
+"""Verbs that are followed by what somebody says or thinks: "contractors say they put out twelve", "the forecast said rain"."""
 _ACTIVITIES = frozenset({
     "got", "getting", "hearing", "missing", "losing", "having", "expecting",
 })  # fmt: skip
@@ -146,6 +151,8 @@ def _is_predicate(lexemes: Sequence[Lexeme], start: int) -> bool:
         return True
     if start == 1 and _is_pronoun(subject):
         return (form == "base" and subject.word in _PLURAL_PRONOUNS and subject.word != "you") or form in {"third person", "past"}
+    if lexeme.word in _REPORTING and after is not None and (lexeme.word == "said" or after.has("DET", "PRON", "SELF", "SOMEONE")):
+        return form != "base" or subject.word.endswith("s")
     if form == "third person":
         is_only_verb = "NOUN" not in parts_of_speech(lexeme.word)
         is_followed = after is not None and (after.has("DET", "PRON", "SELF") or after.word == "to")

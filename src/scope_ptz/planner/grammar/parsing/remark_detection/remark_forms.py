@@ -68,7 +68,8 @@ EXEMPT = re.compile(
     r"|(?:i|we) (?:really |quite |do )?(?:like|liked|love|loved) (?:this|that) one(?: (?:a lot|very much|too))?"
     r"|(?:this|that) one(?:['’]s| is| looks) (?:\w+ )?(?:nice|lovely|good|great|pretty|beautiful|interesting|cool|funny)"
     r"|the [a-z]+(?: [a-z]+)? (?:is|are) (?:still |all |too |so |completely |partly |half |mostly )*"
-    r"(?:hidden|covered|blocked|obscured|cut off|out of (?:view|sight|frame|shot|(?:the )?picture)|dark|blurred|blurry|tiny)",
+    r"(?:hidden|covered|blocked|obscured|cut off|out of (?:view|sight|frame|shot|(?:the )?picture)|dark|blurred|blurry|tiny|fuzzy)"
+    r"(?: (?:on|at|along) (?:both sides|either side|one side|the (?:edges?|top|bottom|sides?)))?",
     re.IGNORECASE,
 )
 """Remarks with words that would ask for something in other texts, such as "one" or a word of a preset's name."""

@@ -14,6 +14,7 @@ from scope_ptz.planner.grammar.parsing.parts.statements import is_statement
 _REPORTING = "reckons?|says?|said|thinks?|rang|called|phoned|radioed|told|wants|wanted|keeps|lost|left|got|saw|heard|complained"
 _STATEMENT = re.compile(
     r"(?:(?:i|someone|somebody|they|he|she) )?(?:left|lost|dropped|dumped) (?:it|them|my|the) .+"
+    r"|(?:the|my|our) (?!camera)(?:\w+ ){0,2}\w+ left (?:it|them) (?:in|at|on|like) .+"
     r"|(?:had|used|seen|borrowed) (?:it|them|him|her|one) .+"
     r"|i(?:'ve| have) "
     r"(?:got )?to \w+ .+|(?:heard|saw|thought i (?:heard|saw)) .+|there(?:'s| is| are) .+|"
@@ -54,7 +55,9 @@ _RESTRICTION = (
     r"|(?:a single|one) (?:\w+ )?(?:move|movement|motion|command|go|step)"
 )
 _REQUEST = (
-    r"must(?! be \w+ed\b)|should(?! (?:be (?:in|here|back|due|along|ready|my|our|his|her|their)|have)\b)"
+    r"must(?! be \w+ed\b)|should(?! (?:be (?:in|here|back|due|along|ready|my|our|his|her|their|parked|standing"
+    r"|(?:out|over|around) (?:there|here))"
+    r"|have|(?:go|come|switch|turn|be) (?:off|on) (?:at|by|when))\b)"
     r"|shall|ought|you|your|please|(?<!see "
     r")(?<!remember )"
     r"(?<!wonder )if|unless|until"
@@ -95,6 +98,9 @@ _HARMLESS = re.compile(
     r"|\b(?:i|we) (?:don't|do not|wouldn't) want (?:anyone|anybody|someone|somebody|people|him|her|them|the \w+) (?:to )?"
     r"(?:slip|fall|trip|get|driv|walk|complain|wait|run|bump)\w*"
     r"|\btrying to (?:see|work out|figure out|find out) (?:if|whether|what|which|how)\b"
+    r"|\b(?:remember|recall|forgot|forget) (?:about )?\w+ing (?:it|them|that)\b"
+    r"|\b(?:been|gone|come|came|went|passed|rung|rang|called|walked|driven|drove|tried) (?:\w+ ){0,2}(?:twice|three "
+    r"times|four times|\w+ times)"
     r"|\b(?:asking|asked|talking|told me) about (?:the|this|our) (?:view|camera)\b"
     r"|\b(?:just |only )?(?:looking|pointing|staring) at (?:the )?(?:sky|ground|floor|ceiling|wall|clouds)\b",
     re.IGNORECASE,

@@ -47,7 +47,8 @@ _TAKING_BACK = re.compile(
 """Words with which a statement may take something back, or ask for something else: "it should be lower", "belay that"."""
 
 _EMBEDDED_QUESTION = re.compile(
-    r"^(?:(?:i|we)(?:['’]d)?|would) (?:\w+ ){0,3}(?:know|learn|find out|see|hear|be told) (?:how|what|which|who|whose|where|if|whether)\b",
+    r"^(?:(?:i|we)(?:['’]d)?|would) (?:\w+ ){0,3}(?:know|learn|find out|see|hear|be told) (?:how|what|which|who|whose"
+    r"|where|if|whether)\b",
     re.IGNORECASE,
 )
 """The beginning of a question in the form of a statement: "I need to know which words are on the board"."""

@@ -13,7 +13,24 @@ NO_TOPIC = re.compile(
 )
 """Words which show that a text is not a noun phrase."""
 
+_COUNTING = r"(?:please )?(?:(?:can|could) you )?(?:count|how many|tell me how many|give me the number of)\b"
+
 COUNTS = (
+    (
+        r"^(?:(?:i|we) )?(?:just )?(?:need|want|doing|do) (?:an? |the |my |our )?(?:quick )?"
+        rf"(?:head ?count|tally|count|figure|number|roll call)(?: for (?:the|my|our) [\w ]{{2,30}}?)?\s*[:,.;-]+ (?={_COUNTING})",
+        "",
+    ),
+    (r"^head ?count(?: (?:at|in|on|for) (?:the |my |our )?([\w ]+?))?[:,;-]+ (how many .+)$", lambda match: _asked_at(match)),
+    (r"\bon (the (?:whole|entire|full) (?:scene|view|picture))\b", r"in \1"),
+    (
+        r"\b(?:(?:have|take) a )?(?:go|look|turn|scan|sweep|pan) (?:all )?(?:a?round|over) the (?:whole|entire|full) (\w+) and "
+        r"count (.+)$",
+        r"count \2 in the whole scene",
+    ),
+    (r"\ball a?round,? (?=(?:in )?the (?:whole|entire|full) (?:scene|view|picture|panorama)\b)", "in "),
+    (r"^([\w -]+?), (?:the )?number of ([\w -]+?)\?*$", r"\1, how many \2?"),
+    (r"\b(how many [\w -]+?) and how many (?=[\w -]+? (?:at|in|on|by) (?:the )?[\w -]+?\W*$)", r"\1 and "),
     (r"\b(are|is|were|was) (?:sat|stood|parked up) (?=at |in |on |by )", r"\1 "),
     (r"\bdo the counting of ", "count the "),
     (r"\bwhich is having\b", "which has"),
@@ -219,3 +236,11 @@ def _counted(match: re.Match[str]) -> str:
 def _found(match: re.Match[str]) -> str:
     """Return "find the dummy" for "dummy. Find it". If "dummy" is not a noun phrase, the text is unchanged."""
     return match[0] if NO_TOPIC.search(match[1]) else f"{match[2]} the {match[1]}"
+
+
+def _asked_at(match: re.Match[str]) -> str:
+    """Return "how many nurses are there at the ward" for "headcount at the ward: how many nurses are there"."""
+    if not match[1]:
+        return match[2]
+    asked = re.sub(r" (?:do|can) you (?:see|count|make out)\W*$| are there\W*$|\W+$", "", match[2])
+    return f"{asked} are there at the {match[1]}?"

@@ -18,7 +18,21 @@ _BEFORE_ADDRESS = (
 
 _TIME = r"(?:\d+(?:\.\d+)?|an?|half an?|[a-z]+(?:-[a-z]+)?) ?(?:s|secs?|seconds?|mins?|minutes?)(?: and a half)?"
 
+_TESTS = r"test|trial|check|test step|step|test case|case|test run|run|item|task"
+_DUTIES = (
+    r"(?:night|day|evening|morning|late|early|hourly|routine|security|shift|last|first|next|final|fire|safety) "
+    r"(?:rounds?|checks?|patrols?|watch|tour|report|count|roll ?call|drill|inspection)"
+)
 COURTESIES = (
+    (rf"^(?:{_TESTS})(?: (?:number|no\.?|step))? \d+[a-z]?\s*[:.,;-]+\s+(?=\w)", ""),
+    (
+        r"[,.;] (?:this is |it's |that's )?(?:the )?(?:pan|tilt|zoom|pan[- ]and[- ]tilt|tracking|focus|preset|camera"
+        r"|speed|repeatability) "
+        r"(?:test|check|trial|run)(?: (?:run|step))?(?: (?:number |no\.? ?)?[\w-]+)?\W*$",
+        "",
+    ),
+    (rf"^{_DUTIES}\s*[:;-]\s+(?=\w)", ""),
+    (rf",\s*{_DUTIES}\W*$", ""),
     (r"(?<!wait)(?<!waiting)(?<!left)(?<!ready) for (?:me|us) (?=(?:at|on|in|by|outside) (?:the|each|every|both)\b)", " "),
     (rf"^(?:auto[- ]?)?tracking(?: test| check)?[,:] ({_TIME})[,:] (?=the |an? |that |this )([^.;]+?)\W*$", r"track \2 for \1"),
     (

@@ -28,6 +28,11 @@ _MAST = "tower|mast|roof|pole|camera|cam"
 
 MOVES = (
     (
+        r"\b(pan|tilt|turn|move|swing|go|rotate|zoom in|zoom out) (?:just )?(?:a little|a bit|slightly|a touch|a few degrees),? "
+        rf"{_ABOUT}(\d+(?:\.\d+)?|\w+) (degrees?|deg|percent|%),? (?=(?:to the |up|down|left|right))",
+        r"\1 \2 \3 ",
+    ),
+    (
         r"^(?:please )?(?:start|starting|begin|beginning) (?:off )?(?:from|at) (?:the |its |your )?home(?: position| view| preset)?"
         r"(?:,| and) (?=\w)",
         "go home, then ",

@@ -27,7 +27,20 @@ REMARKS = (
     (r",\s*(?:grand|lovely|perfect|ta|cheers)\s*[.!]?$", ""),
     (r"^righto[,.!]? ", ""),
     (r",? if (?:it|you|that|the camera) (?:can|could) (?:do|manage) (?:that|it|this)(?=[,.]|$)", ""),
-    (r",? for (?:the|my|our) (?:sheet|report|log|file|files|records?|logbook|book|office|inventory|audit|insurance)\W*$", ""),
+    (
+        r"[,.;]? (?:both |all (?:of them )?|just |(?:it|that|this)(?:['’]s| is) |i (?:need|want) (?:it|them|that) "
+        r"|need (?:it|them) )?"
+        r"for (?:the|my|our) (?:(?:morning|evening|night|shift|daily|hourly|weekly|monthly|stock|incident|site|safety|fire|duty) )?"
+        r"(?:sheet|report|log|file|files|records?|logbook|book|office|inventory|audit|insurance|handover|muster|survey)\W*$",
+        "",
+    ),
+    (
+        r"[,.;] (?:(?:i|we) )?(?:just )?(?:need|want) the (?:exact )?(?:numbers?|figures?|counts?|totals?|tally|result|answer)"
+        r"(?: (?:for|in) (?:the|my|our) [\w ]{2,40})?\W*$",
+        "",
+    ),
+    (r"[,.;] (?:right |ok |okay |and )?that(?:['’]s| is) (?:me|us) (?:finished|done|off)(?: for (?:the |to)?\w+)?\W*$", ""),
+    (r"[,.;] (?:just )?(?:checking|testing|measuring|listening to|looking at) (?:the|its) [\w ]{2,30} for [\w ]{2,30}\W*$", ""),
     (r", i swear(?: to god)?(?=,)", ""),
     (r"\bi should like\b", "i would like"),
     (r"^aye,? (?:right,? )?", ""),
@@ -246,5 +259,15 @@ REMARKS = (
     (r"\bthe sky is taking up half of the picture\b", "it is too high"),
     (r",? the lower edge of the [\w ]+ is (?:just )?cut off\W*$", ""),
     (r", i (?:need|want|have) to (?:see|check|know|test) (?:if|whether) it\b[^.;?]*\W*$", ""),
+    (
+        r"[,.;?] (?:the |my |our )?\w+(?: \w+)? (?:wants?|needs?|would like|is asking|are asking|asks?|asked)(?: to know)? "
+        r"(?:if|whether|when) (?:they|he|she|we|i) (?:can|should|may|could|need|have to|must|ought)\b[^.;?]*\W*$",
+        "",
+    ),
+    (
+        r"\b((?:forget|skip|scrap|cancel|drop|leave|leave out|never mind) (?:about )?the \w+)[,.;] "
+        r"(?!(?:just|please|then|and|go|pan|tilt|zoom|take|count|find|follow|show|tell)\b)[^,.;]*\balready\b[^,.;]*\W*$",
+        r"\1",
+    ),
 )
 """Patterns of remarks, with what is left of them."""

@@ -36,6 +36,7 @@ WORDS = {
     "ontoo": "onto",
     "oughta": "ought to",
     "ower": "over",
+    "pn": "pan",
     "reyt": "right",
     "tae": "to",
     "teh": "the",
@@ -56,7 +57,7 @@ WORDS = {
 }
 """Misspelt, shortened and dialect words with their standard forms."""
 
-_TROUBLE = r"(?:an? |some |no |lots of |bad )?(?:trouble|problems?|issues?|bother|words?|hassle|grief|complaints?)"
+_TROUBLE = r"(?:an? |another |some |no |lots of |bad )?(?:trouble|problems?|issues?|bother|words?|hassle|grief|complaints?)"
 
 SPELLING = (
     (rf"(?<=\w)([,.;]) had (?={_TROUBLE}\b)", r"\1 i had "),
@@ -90,6 +91,10 @@ SPELLING = (
     (r"\btk (?=a |an |the |pic|photo)", "take "),
     (r"\bbk (?=to|home|left|right|up|down|out)", "back "),
     (r"\b(can|do) u c\b", r"\1 you see"),
+    (r"\b(can|could|do|did|will|would|if|when|what|where) u (?=[a-z])", r"\1 you "),
+    (r"\bwat (?=is\b|are\b|do\b|does\b|can\b|you\b|u\b|colou?r\b|time\b)", "what "),
+    (r"\bwats (?=\w)", "what's "),
+    (r"^got to (?=the\b)", "go to "),
     (r"^hw (?=many|much)", "how "),
     (r"\bno\.? of (?!course\b)(?=[a-z])", "number of "),
     (r"(?<=\w) n (?=[a-z])", " and "),

@@ -73,7 +73,16 @@ VIEWS = (
         r"(find) it(?: for me)?\?*$",
         r"\2 the \1",
     ),
-    (rf"\b((?:{_PICTURES})) of what(?:ever)? you(?:['’]re| are) (?:seeing|looking at)\b", r"\1"),
+    (
+        rf"\b((?:{_PICTURES}|image)) of what(?:ever)? (?:you(?:['’]re| are)|(?:it|the camera)(?:['’]s| is)) "
+        r"(?:(?:now|currently) )?(?:seeing|showing|(?:looking|pointing|pointed|aimed) at)(?: (?:now|right now|at the moment))?",
+        r"\1",
+    ),
+    (
+        r"\b(zoom (?:in|out)(?: (?:by )?[\w.]+)?) on what (?:we|you|i) (?:have|can see|see)(?: (?:now|here|right now"
+        r"|at the moment))?\b",
+        r"\1",
+    ),
     (r"^cent(?:er|re) and zoom (?:in )?on ", "zoom in on "),
     (r"\b(take|get|grab) another wan\b", r"\1 another picture"),
     (r"^(?:please )?(?:photo|pic) (?=every|each|all the)", "photograph "),
