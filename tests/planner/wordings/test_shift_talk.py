@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from scope_ptz.planner.plan import plan
 from tests.planner.wordings.planned_calls import ask, count, planned_calls, zoom
 
 PRESETS = ("main-gate", "yard", "pump-house")
@@ -75,3 +76,32 @@ def test_an_amount_that_a_colleague_states_is_asked_about() -> None:
 def test_a_question_in_the_form_of_a_statement_is_asked() -> None:
     text = "I would like to know which letters are on the board. Tilt down by 10, then zoom in 2x."
     assert planned_calls(text, PRESETS) == f"{ask('which letters are on the board')}; adjust_ptz(-10); adjust_ptz(2)"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "pan left 20, that is too dangerous",
+        "go home, my supervisor thinks it is pointless",
+        "zoom in on the tent, farmers say they object",
+    ],
+)
+def test_objections_are_asked_about(text: str) -> None:
+    assert plan(text, PRESETS).clarification
+
+
+@pytest.mark.parametrize(
+    ("text", "calls"),
+    [
+        ("head for the site office", "go_to_preset(site-office)"),
+        ("how many bikes are there at the yard and how many are there at the quay?",
+         f"go_to_preset(yard); {count('bikes')}; go_to_preset(quay); {count('bikes')}"),
+        ("go home, that's me done for today", "go_home()"),
+    ],
+)  # fmt: skip
+def test_only_remarks_are_left_out(text: str, calls: str) -> None:
+    assert planned_calls(text, ("yard", "quay", "site-office")) == calls
+
+
+def test_a_direction_after_the_word_check_is_not_lost() -> None:
+    assert plan("follow the van, zoom check left", PRESETS).calls == ()

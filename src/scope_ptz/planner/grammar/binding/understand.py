@@ -47,7 +47,7 @@ from scope_ptz.planner.grammar.parsing.instruction_parser import MAX_CHARS, Pars
 from scope_ptz.planner.grammar.parsing.remark_detection.shorter_versions import MAX_SHORTENED_CHARS, shorter_versions
 from scope_ptz.planner.grammar.parsing.remark_detection.versions import versions_without_remarks
 from scope_ptz.planner.grammar.parsing.remark_detection.withdrawing_segments import withdrawing_segments
-from scope_ptz.planner.grammar.parsing.rewording.plain_text import written_out
+from scope_ptz.planner.grammar.parsing.rewording.plain_text import without_set_remarks, written_out
 from scope_ptz.planner.grammar.parsing.rewording.withdrawn_parts import takes_back_unclearly
 
 if TYPE_CHECKING:
@@ -137,7 +137,7 @@ def _unless_taken_back(
     """
     if not evidence_of(understanding.steps).moves:
         return understanding
-    for segment in withdrawing_segments(written_out(said), preset_names or ()):
+    for segment in withdrawing_segments(without_set_remarks(said), preset_names or ()):
         other = _read(segment.rest, preset_names, conversation)
         if not other.steps:
             other = _read_without_remarks(segment.rest, other, preset_names, conversation)

@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterator, Sequence
 
 from scope_ptz.planner.grammar.lexing.lexer import lexemes_of
+from scope_ptz.planner.grammar.parsing.asides import may_withdraw
 from scope_ptz.planner.grammar.parsing.parts.clause import VERBS
 from scope_ptz.planner.grammar.parsing.parts.statements import is_statement
 from scope_ptz.planner.grammar.parsing.remark_detection.features import features_of
@@ -89,7 +90,7 @@ def _is_binding(text: str, presets: tuple[str, ...]) -> bool:
     first = next((lexeme for lexeme in lexemes_of(text, presets) if not lexeme.has("FILLER", "AND", "BUT")), None)
     if first is not None and (first.has(*VERBS, "TELL", "HOWMANY") or first.word == "of"):
         return True  # "one picture, only one, of the van"
-    if _TAKING_BACK.search(text) is not None or _EMBEDDED_QUESTION.match(text) is not None:
+    if _TAKING_BACK.search(text) is not None or may_withdraw(lexemes_of(text)) or _EMBEDDED_QUESTION.match(text) is not None:
         return True
     if (negated := _NEGATED_STATEMENT.match(text)) is not None:
         text = text[negated.end() :]

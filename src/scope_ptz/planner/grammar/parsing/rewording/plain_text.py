@@ -21,6 +21,7 @@ from scope_ptz.planner.grammar.parsing.rewording.tables.withdrawals import WITHD
 
 _STANDARD = rewordings((*SPELLING, *CONDITIONS, *COURTESIES))
 _ASIDES = rewordings((*REPAIRS, *WITHDRAWALS, *REMARKS))
+_SET_REMARKS = rewordings(REMARKS)
 _WORDINGS = rewordings((*MOVES, *VIEWS, *QUESTIONS, *COUNTS))
 _NONSTANDARD = re.compile(rf"\b(?:{'|'.join(WORDS)})\b['’]?(?!\w)", re.IGNORECASE)
 _LONG_WORD = re.compile(r"\b[a-z]{5,}\b")
@@ -43,6 +44,11 @@ def _whole(match: re.Match[str]) -> str:
     """Return "sitting" for "sittin" and "sittin'"."""
     word = match[1]
     return f"{word}g" if with_whole_ending(word.lower()) != word.lower() else match[0]
+
+
+def without_set_remarks(text: str) -> str:
+    """Return a text, written out, without the remarks that are known by their words: "..., that's me done for tonight"."""
+    return reworded_text(written_out(text), _SET_REMARKS) if len(text) <= _MAX_CHARS else text
 
 
 def without_asides(text: str, presets: tuple[str, ...] = ()) -> str:

@@ -13,6 +13,7 @@ NO_TOPIC = re.compile(
 )
 """Words which show that a text is not a noun phrase."""
 
+_THINGS = r"(?!there\b)[\w-]+(?: (?!there\b|are\b|is\b|at\b|in\b|on\b|by\b|with\b|and\b)[\w-]+){0,3}"
 _COUNTING = r"(?:please )?(?:(?:can|could) you )?(?:count|how many|tell me how many|give me the number of)\b"
 
 COUNTS = (
@@ -30,7 +31,7 @@ COUNTS = (
     ),
     (r"\ball a?round,? (?=(?:in )?the (?:whole|entire|full) (?:scene|view|picture|panorama)\b)", "in "),
     (r"^([\w -]+?), (?:the )?number of ([\w -]+?)\?*$", r"\1, how many \2?"),
-    (r"\b(how many [\w -]+?) and how many (?=[\w -]+? (?:at|in|on|by) (?:the )?[\w -]+?\W*$)", r"\1 and "),
+    (rf"\b(how many {_THINGS}) and how many (?={_THINGS}(?: are)? (?:at|in|on) (?:the )?[\w -]+?\W*$)", r"\1 and "),
     (r"\b(are|is|were|was) (?:sat|stood|parked up) (?=at |in |on |by )", r"\1 "),
     (r"\bdo the counting of ", "count the "),
     (r"\bwhich is having\b", "which has"),

@@ -28,7 +28,7 @@ COURTESIES = (
     (
         r"[,.;] (?:this is |it's |that's )?(?:the )?(?:pan|tilt|zoom|pan[- ]and[- ]tilt|tracking|focus|preset|camera"
         r"|speed|repeatability) "
-        r"(?:test|check|trial|run)(?: (?:run|step))?(?: (?:number |no\.? ?)?[\w-]+)?\W*$",
+        rf"(?:test|check|trial|run)(?: (?:run|step))?(?: (?:number |no\.? ?)?(?:\d+|{_NUMBER}))?\W*$",
         "",
     ),
     (rf"^{_DUTIES}\s*[:;-]\s+(?=\w)", ""),

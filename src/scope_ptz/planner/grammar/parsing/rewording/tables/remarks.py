@@ -28,7 +28,8 @@ REMARKS = (
     (r"^righto[,.!]? ", ""),
     (r",? if (?:it|you|that|the camera) (?:can|could) (?:do|manage) (?:that|it|this)(?=[,.]|$)", ""),
     (
-        r"[,.;]? (?:both |all (?:of them )?|just |(?:it|that|this)(?:['’]s| is) |i (?:need|want) (?:it|them|that) "
+        r"(?<!head)(?<!make)(?<!aim)(?<!look)(?<!search)[,.;]? (?:both |all (?:of them )?|just |(?:it|that|this)"
+        r"(?:['’]s| is) |i (?:need|want) (?:it|them|that) "
         r"|need (?:it|them) )?"
         r"for (?:the|my|our) (?:(?:morning|evening|night|shift|daily|hourly|weekly|monthly|stock|incident|site|safety|fire|duty) )?"
         r"(?:sheet|report|log|file|files|records?|logbook|book|office|inventory|audit|insurance|handover|muster|survey)\W*$",
