@@ -7,7 +7,7 @@ import pytest
 from scope_ptz.planner.grammar.lexing.lexer import lexemes_of
 from scope_ptz.planner.grammar.parsing.parts.statements import is_past_event, is_statement
 from scope_ptz.planner.plan import plan
-from tests.planner.test_conversations import last_calls
+from tests.planner.conversations.talk import last_calls
 from tests.planner.wordings.test_wordings_of_speech import PRESETS, shown
 
 
