@@ -129,3 +129,16 @@ def test_an_unclear_first_step_is_asked_about(instruction: str) -> None:
 )
 def test_what_this_camera_cannot_do_once_is_asked_about(instruction: str) -> None:
     assert not plan(instruction, PRESETS).understood
+
+
+@pytest.mark.parametrize(
+    "instruction",
+    ["pan left 30. Leave it where it is.", "zoom in, actually leave it where it is", "tilt up 4, no, leave it as it is"],
+)
+def test_a_turn_is_asked_about_if_the_last_words_leave_the_camera_alone(instruction: str) -> None:
+    assert "leave it" in str(plan(instruction, PRESETS).clarification).lower()
+
+
+@pytest.mark.parametrize("instruction", ["take a photo, leave it where it is", "take a photo & leave it there"])
+def test_a_picture_is_taken_if_the_camera_stays(instruction: str) -> None:
+    assert [call.name for call in plan(instruction, PRESETS).calls] == ["take_image"]

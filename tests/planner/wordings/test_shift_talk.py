@@ -97,6 +97,7 @@ def test_objections_are_asked_about(text: str) -> None:
         ("how many bikes are there at the yard and how many are there at the quay?",
          f"go_to_preset(yard); {count('bikes')}; go_to_preset(quay); {count('bikes')}"),
         ("go home, that's me done for today", "go_home()"),
+        ("how many vans are at the quay? they're not meant to park there", f"go_to_preset(quay); {count('vans')}"),
     ],
 )  # fmt: skip
 def test_only_remarks_are_left_out(text: str, calls: str) -> None:

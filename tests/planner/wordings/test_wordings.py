@@ -45,7 +45,7 @@ CHANGES: dict[str, Callable[[str], str]] = {
     "return": words(r"\bgo back\b", "return"),
     "otherwise": words(r"\botherwise\b", "else"),
     "swing": words(r"\bpan (?=left|right)", "swing "),
-    "get closer": words(r"\bzoom in\b(?! on| to)", "get closer"),
+    "get closer": words(r"(?<!max )(?<!full )(?<!maximum )\bzoom in\b(?! on| to)(?!.*\bzoom\b)", "get closer"),
     "till": words(r"\buntil\b", "till"),
     "curly apostrophes": lambda text: text.replace("'", "’"),
 }

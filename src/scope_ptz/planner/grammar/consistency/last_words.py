@@ -21,6 +21,11 @@ _NOTHING = "(do|DOV) nothing|stay_put|(do|DOV) not (touch|LITTLE|do|move|change)
 _STOPPING = f"(HALT|pause|freeze|{_NOTHING}) (it|right)*"
 """Words that stop the camera. After several commands, "stop" and "over" are signals of radio operators."""
 
+_LEAVING = (
+    "leave_it_where_it_is|leave_it as it is|leave_it as_it_is|LEAVE (it|that|WHOLETHING) (alone|as it is|as_it_is|where it is)"
+)
+"""Words that leave the camera alone: "pan left 30. Actually leave it where it is"."""
+
 _AMOUNT = (
     f"(NUM {_UNIT}?)? (less|more|fewer)|NUM {_UNIT}? (ATMOST|maximum|max|tops|ORFEWER)|ATMOST NUM {_UNIT}?|"
     "(CARRY|TAKE|it|that)* ((?!twice|thrice) (DOUBLE|TRIPLE|QUADRUPLE|HALVE)) (it|that)?|half (of)? (it|that)|"
@@ -116,6 +121,8 @@ def _changes(before: Sequence[Lexeme], end: Sequence[Lexeme]) -> bool:
     if not is_conditional and _is(_STOPPING, words) and (is_single or _is(_NOTHING, words)):
         return True
     if is_turn and ((is_single and _is(_AMOUNT, words)) or (is_sentence and _is(_NOT_SO, words)) or _is_too_much(before, words)):
+        return True
+    if is_turn and not any(x.has("PICTURE") for x in before) and _is(_LEAVING, words):
         return True
     if is_turn and (_is(_WAY, words) or (is_sentence and _denies_way(before, words))):
         return True

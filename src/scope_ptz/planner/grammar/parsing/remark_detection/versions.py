@@ -47,6 +47,12 @@ _TAKING_BACK = re.compile(
 )
 """Words with which a statement may take something back, or ask for something else: "it should be lower", "belay that"."""
 
+_RULE_FOR_OTHERS = re.compile(
+    r"^(?:they|he|she)(?:['’](?:s|re) not| (?:is|are|was|were)(?: not|n['’]t)) (?:supposed|meant) to\b",
+    re.IGNORECASE,
+)
+"""What other people must not do, which forbids the camera nothing: "they're not supposed to park there"."""
+
 _EMBEDDED_QUESTION = re.compile(
     r"^(?:(?:i|we)(?:['’]d)?|would) (?:\w+ ){0,3}(?:know|learn|find out|see|hear|be told) (?:how|what|which|who|whose"
     r"|where|if|whether)\b",
@@ -90,7 +96,9 @@ def _is_binding(text: str, presets: tuple[str, ...]) -> bool:
     first = next((lexeme for lexeme in lexemes_of(text, presets) if not lexeme.has("FILLER", "AND", "BUT")), None)
     if first is not None and (first.has(*VERBS, "TELL", "HOWMANY") or first.word == "of"):
         return True  # "one picture, only one, of the van"
-    if _TAKING_BACK.search(text) is not None or may_withdraw(lexemes_of(text)) or _EMBEDDED_QUESTION.match(text) is not None:
+    if _TAKING_BACK.search(text) is not None or _EMBEDDED_QUESTION.match(text) is not None:
+        return True
+    if may_withdraw(lexemes_of(text)) and _RULE_FOR_OTHERS.match(text) is None:
         return True
     if (negated := _NEGATED_STATEMENT.match(text)) is not None:
         text = text[negated.end() :]

@@ -60,6 +60,7 @@ WORDS = {
 _TROUBLE = r"(?:an? |another |some |no |lots of |bad )?(?:trouble|problems?|issues?|bother|words?|hassle|grief|complaints?)"
 
 SPELLING = (
+    (r"(?<=\w) & (?-i:(?=[a-z]))", " and "),
     (rf"(?<=\w)([,.;]) had (?={_TROUBLE}\b)", r"\1 i had "),
     (r"(?<=\w)\s*(?:\.{2,}|…)(?=\s+\w)", ","),
     (r"\ball way\b", "all the way"),
